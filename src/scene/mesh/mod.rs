@@ -1,0 +1,17 @@
+//! Triangle meshes as files hold them and as generators make them.
+
+/// A triangle mesh in its own space.
+///
+/// Invariants (kept by every reader and generator): at least one triangle, every index below
+/// `positions.len()`, every number finite, optional attributes as long as `positions`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshData {
+    /// Vertex positions.
+    pub positions: Vec<[f32; 3]>,
+    /// Unit vertex normals, one per position, when the source has them.
+    pub normals: Option<Vec<[f32; 3]>>,
+    /// Texture coordinates, one per position, when the source has them.
+    pub uvs: Option<Vec<[f32; 2]>>,
+    /// Vertex indices of the triangles, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
