@@ -1,0 +1,187 @@
+//! The colours of a scene, each as a function of the wavelength and as linear sRGB.
+
+use super::cie::{ILLUMINANT_E, illuminant_d65, srgb_of_emission, srgb_of_reflectance};
+use super::error::{CurveError, Place};
+use super::piecewise_linear::PiecewiseLinear;
+use super::upsampling::SigmoidPolynomial;
+use super::values::Spectrum;
+use super::wavelengths::Wavelengths;
+
+/// A reflectance or an emission (radiance, radiant intensity, irradiance) of the scene.
+///
+/// It holds the form that spectral rendering needs and the one for rendering in three channels. Both follow
+/// Mitsuba 3: the same scene has the same colours there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpectralCurve {
+    /// Linear sRGB.
+    rgb: [f32; 3],
+    /// The function of the wavelength.
+    shape: Shape,
+}
+
+/// The kinds of functions of the wavelength.
+#[derive(Clone, Debug, PartialEq)]
+enum Shape {
+    Constant(f32),
+    Tabulated(PiecewiseLinear),
+    /// A colour of a surface.
+    Sigmoid(SigmoidPolynomial),
+    /// A colour of a lamp: D65 filtered by a colour and multiplied by `scale`.
+    FilteredD65 {
+        filter: SigmoidPolynomial,
+        scale: f32,
+    },
+}
+
+/// The greatest emission: far above all that is real, and far from the overflow of `f32`.
+const MAX_EMISSION: f32 = 1e30;
+
+impl SpectralCurve {
+    /// Nothing at any wavelength.
+    pub const BLACK: Self = Self {
+        rgb: [0.0; 3],
+        shape: Shape::Constant(0.0),
+    };
+
+    /// The same reflectance at all wavelengths, and in all channels.
+    ///
+    /// # Errors
+    /// A `reflectance` outside [0, 1].
+    pub fn constant_reflectance(reflectance: f32) -> Result<Self, CurveError> {
+        check_reflectance(reflectance, Place::Everywhere)?;
+        Ok(Self {
+            rgb: [reflectance; 3],
+            shape: Shape::Constant(reflectance),
+        })
+    }
+
+    /// The same emission per nm at all wavelengths. In linear sRGB this is the colour of the illuminant E,
+    /// (1.205, 0.948, 0.909), times `emission`.
+    ///
+    /// # Errors
+    /// An `emission` that is negative, greater than 1e30 or not a number.
+    pub fn constant_emission(emission: f32) -> Result<Self, CurveError> {
+        check_emission(emission, Place::Everywhere)?;
+        let rgb = ILLUMINANT_E.map(|channel| channel as f32 * emission);
+        Ok(Self {
+            rgb,
+            shape: Shape::Constant(emission),
+        })
+    }
+
+    /// A measured reflectance by its `entries` (wavelength in nm, reflectance) in the order of increasing
+    /// wavelength: linear between them and zero outside their range. Its linear sRGB colour is the one under D65,
+    /// limited to [0, 1].
+    ///
+    /// # Errors
+    /// Fewer than two entries, wavelengths that are not positive and increasing, a reflectance outside [0, 1].
+    pub fn tabulated_reflectance(entries: &[(f32, f32)]) -> Result<Self, CurveError> {
+        let table = PiecewiseLinear::new(entries, check_reflectance)?;
+        Ok(Self {
+            rgb: srgb_of_reflectance(|nm| table.at(nm)),
+            shape: Shape::Tabulated(table),
+        })
+    }
+
+    /// A measured emission by its `entries` (wavelength in nm, emission per nm) in the order of increasing
+    /// wavelength: linear between them and zero outside their range. Its linear sRGB colour has no upper limit;
+    /// negative components, of colours outside the sRGB gamut, become zero.
+    ///
+    /// # Errors
+    /// Fewer than two entries, wavelengths that are not positive and increasing, an emission that is negative,
+    /// greater than 1e30 or not a number.
+    pub fn tabulated_emission(entries: &[(f32, f32)]) -> Result<Self, CurveError> {
+        let table = PiecewiseLinear::new(entries, check_emission)?;
+        Ok(Self {
+            rgb: srgb_of_emission(|nm| table.at(nm)),
+            shape: Shape::Tabulated(table),
+        })
+    }
+
+    /// A reflectance whose colour under D65 is `rgb` (linear sRGB): a smooth spectrum after Jakob and Hanika 2019.
+    ///
+    /// # Errors
+    /// A component outside [0, 1].
+    pub fn rgb_reflectance(rgb: [f32; 3]) -> Result<Self, CurveError> {
+        for (channel, value) in rgb.into_iter().enumerate() {
+            check_reflectance(value, Place::Channel(channel))?;
+        }
+        let shape = match rgb {
+            [r, g, b] if r == g && g == b => Shape::Constant(r),
+            _ => Shape::Sigmoid(SigmoidPolynomial::fit(rgb)),
+        };
+        Ok(Self { rgb, shape })
+    }
+
+    /// An emission of the colour `rgb` (linear sRGB): the illuminant D65 (of luminance 1) filtered by the smooth
+    /// spectrum of the same hue whose greatest component is one half, scaled to `rgb`.
+    ///
+    /// # Errors
+    /// A component that is negative, greater than 1e30 or not a number.
+    pub fn rgb_emission(rgb: [f32; 3]) -> Result<Self, CurveError> {
+        for (channel, value) in rgb.into_iter().enumerate() {
+            check_emission(value, Place::Channel(channel))?;
+        }
+        let scale = 2.0 * rgb.into_iter().fold(0.0, f32::max);
+        if scale == 0.0 {
+            return Ok(Self::BLACK);
+        }
+        let filter = SigmoidPolynomial::fit(rgb.map(|channel| (channel / scale).min(0.5)));
+        Ok(Self {
+            rgb,
+            shape: Shape::FilteredD65 { filter, scale },
+        })
+    }
+
+    /// The colour as linear sRGB.
+    #[inline]
+    pub fn rgb(&self) -> [f32; 3] {
+        self.rgb
+    }
+
+    /// Whether it is zero at all wavelengths.
+    pub fn is_black(&self) -> bool {
+        match &self.shape {
+            Shape::Constant(value) => *value == 0.0,
+            Shape::Tabulated(table) => table.is_zero(),
+            Shape::Sigmoid(_) | Shape::FilteredD65 { .. } => self.rgb == [0.0; 3],
+        }
+    }
+
+    /// The values at `wavelengths`.
+    #[inline]
+    pub fn evaluate<const N: usize>(&self, wavelengths: &Wavelengths<N>) -> Spectrum<N> {
+        // One branch for all wavelengths, and a loop that the compiler can vectorise in each arm.
+        Spectrum(match &self.shape {
+            Shape::Constant(value) => [*value; N],
+            Shape::Tabulated(PiecewiseLinear::Regular(table)) => {
+                wavelengths.nm().map(|nm| table.at(nm))
+            }
+            Shape::Tabulated(PiecewiseLinear::Irregular(table)) => {
+                wavelengths.nm().map(|nm| table.at(nm))
+            }
+            Shape::Sigmoid(reflectance) => wavelengths.nm().map(|nm| reflectance.at(nm)),
+            Shape::FilteredD65 { filter, scale } => wavelengths
+                .nm()
+                .map(|nm| scale * filter.at(nm) * illuminant_d65(nm)),
+        })
+    }
+}
+
+/// Refuses what is not a reflectance; `place` tells the user where it stands.
+fn check_reflectance(value: f32, place: Place) -> Result<(), CurveError> {
+    if (0.0..=1.0).contains(&value) {
+        Ok(())
+    } else {
+        Err(CurveError::InvalidReflectance { value, place })
+    }
+}
+
+/// Refuses what is not an emission; `place` tells the user where it stands.
+fn check_emission(value: f32, place: Place) -> Result<(), CurveError> {
+    if (0.0..=MAX_EMISSION).contains(&value) {
+        Ok(())
+    } else {
+        Err(CurveError::InvalidEmission { value, place })
+    }
+}

@@ -1,0 +1,211 @@
+//! A function of the wavelength by its values at some wavelengths, linear between them.
+
+use super::error::{CurveError, Place};
+
+/// A tabulated function, zero outside the range of its entries.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum PiecewiseLinear {
+    /// Entries at equal distances: found by one multiplication.
+    Regular(RegularTable),
+    /// Entries at increasing wavelengths: found by bisection.
+    Irregular(IrregularTable),
+}
+
+/// Values at equal distances.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct RegularTable {
+    /// Wavelength of the first value, in nm.
+    first_nm: f32,
+    /// Entries per nm.
+    entries_per_nm: f32,
+    /// At least two values.
+    values: Box<[f32]>,
+}
+
+/// Values at increasing wavelengths.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct IrregularTable {
+    /// At least two wavelengths, increasing, in nm.
+    nm: Box<[f32]>,
+    /// One value for each wavelength.
+    values: Box<[f32]>,
+}
+
+/// How far, in steps, an entry may be from its place in a regular table: the rounding of wavelengths to `f32`.
+const REGULARITY_TOLERANCE: f64 = 1e-4;
+
+impl PiecewiseLinear {
+    /// The function through the `entries` (wavelength in nm, value).
+    ///
+    /// # Errors
+    /// Fewer than two entries, wavelengths that are not positive numbers, or that do not increase, and whatever
+    /// `check` says of a value and its place.
+    pub(super) fn new(
+        entries: &[(f32, f32)],
+        check: impl Fn(f32, Place) -> Result<(), CurveError>,
+    ) -> Result<Self, CurveError> {
+        if entries.len() < 2 {
+            return Err(CurveError::TooFewEntries {
+                count: entries.len(),
+            });
+        }
+        let mut previous_nm = 0.0;
+        for (index, &(nm, value)) in entries.iter().enumerate() {
+            let entry = index + 1;
+            if !(nm.is_finite() && nm > 0.0) {
+                return Err(CurveError::InvalidWavelength { entry, nm });
+            }
+            if nm <= previous_nm {
+                return Err(CurveError::NotIncreasing {
+                    entry,
+                    previous_nm,
+                    nm,
+                });
+            }
+            check(value, Place::Wavelength(nm))?;
+            previous_nm = nm;
+        }
+        let nm: Box<[f32]> = entries.iter().map(|entry| entry.0).collect();
+        let values = entries.iter().map(|entry| entry.1).collect();
+        Ok(match regular_step(&nm) {
+            Some(step) => Self::Regular(RegularTable {
+                first_nm: nm[0],
+                entries_per_nm: (1.0 / step) as f32,
+                values,
+            }),
+            None => Self::Irregular(IrregularTable { nm, values }),
+        })
+    }
+
+    /// The value at `nm`.
+    #[inline]
+    pub(super) fn at(&self, nm: f32) -> f32 {
+        match self {
+            Self::Regular(table) => table.at(nm),
+            Self::Irregular(table) => table.at(nm),
+        }
+    }
+
+    /// Whether it is zero at all wavelengths.
+    pub(super) fn is_zero(&self) -> bool {
+        let (Self::Regular(RegularTable { values, .. })
+        | Self::Irregular(IrregularTable { values, .. })) = self;
+        values.iter().all(|&value| value == 0.0)
+    }
+}
+
+impl RegularTable {
+    /// The value at `nm`.
+    #[inline]
+    pub(super) fn at(&self, nm: f32) -> f32 {
+        let last = self.values.len() - 1;
+        let position = (nm - self.first_nm) * self.entries_per_nm;
+        if !(0.0..=last as f32).contains(&position) {
+            return 0.0;
+        }
+        let entry = (position as usize).min(last - 1);
+        let (before, after) = (self.values[entry], self.values[entry + 1]);
+        before + (position - entry as f32) * (after - before)
+    }
+}
+
+impl IrregularTable {
+    /// The value at `nm`.
+    #[inline]
+    pub(super) fn at(&self, nm: f32) -> f32 {
+        let last = self.nm.len() - 1;
+        if !(self.nm[0]..=self.nm[last]).contains(&nm) {
+            return 0.0;
+        }
+        let entry = self.nm[1..last].partition_point(|&node| node <= nm);
+        let (before, after) = (self.values[entry], self.values[entry + 1]);
+        before + (nm - self.nm[entry]) / (self.nm[entry + 1] - self.nm[entry]) * (after - before)
+    }
+}
+
+/// The distance of increasing wavelengths in nm, if they are equally far apart.
+fn regular_step(nm: &[f32]) -> Option<f64> {
+    let first = f64::from(nm[0]);
+    let step = (f64::from(nm[nm.len() - 1]) - first) / (nm.len() - 1) as f64;
+    let is_regular = nm.iter().enumerate().all(|(i, &nm)| {
+        (f64::from(nm) - (first + i as f64 * step)).abs() <= REGULARITY_TOLERANCE * step
+    });
+    is_regular.then_some(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(entries: &[(f32, f32)]) -> Result<PiecewiseLinear, CurveError> {
+        PiecewiseLinear::new(entries, |_, _| Ok(()))
+    }
+
+    #[test]
+    fn values_are_linear_between_the_entries_and_zero_outside() {
+        let regular = table(&[(400.0, 1.0), (500.0, 3.0), (600.0, 0.0)]).unwrap();
+        let irregular = table(&[(400.0, 1.0), (500.0, 3.0), (510.0, 2.0), (600.0, 0.5)]).unwrap();
+        assert!(matches!(regular, PiecewiseLinear::Regular(_)));
+        assert!(matches!(irregular, PiecewiseLinear::Irregular(_)));
+        for (nm, value) in [
+            (399.9, 0.0),
+            (400.0, 1.0),
+            (450.0, 2.0),
+            (500.0, 3.0),
+            (550.0, 1.5),
+            (600.1, 0.0),
+        ] {
+            assert!((regular.at(nm) - value).abs() < 1e-5, "{nm} nm");
+        }
+        for (nm, value) in [
+            (399.9, 0.0),
+            (400.0, 1.0),
+            (450.0, 2.0),
+            (500.0, 3.0),
+            (505.0, 2.5),
+            (555.0, 1.25),
+            (600.0, 0.5),
+            (600.1, 0.0),
+        ] {
+            assert!((irregular.at(nm) - value).abs() < 1e-5, "{nm} nm");
+        }
+    }
+
+    #[test]
+    fn grids_of_decimal_fractions_are_regular() {
+        let entries: Vec<_> = (0..101).map(|i| (380.0 + 3.9 * i as f32, 0.5)).collect();
+        assert!(matches!(
+            table(&entries).unwrap(),
+            PiecewiseLinear::Regular(_)
+        ));
+    }
+
+    #[test]
+    fn bad_lists_are_errors() {
+        assert_eq!(table(&[]), Err(CurveError::TooFewEntries { count: 0 }));
+        assert_eq!(
+            table(&[(400.0, 1.0)]),
+            Err(CurveError::TooFewEntries { count: 1 })
+        );
+        assert_eq!(
+            table(&[(400.0, 1.0), (400.0, 1.0)]),
+            Err(CurveError::NotIncreasing {
+                entry: 2,
+                previous_nm: 400.0,
+                nm: 400.0
+            })
+        );
+        assert!(matches!(
+            table(&[(f32::NAN, 1.0), (400.0, 1.0)]),
+            Err(CurveError::InvalidWavelength { entry: 1, .. })
+        ));
+        assert!(matches!(
+            table(&[(4.0, 1.0), (f32::INFINITY, 1.0)]),
+            Err(CurveError::InvalidWavelength { entry: 2, .. })
+        ));
+        assert!(matches!(
+            table(&[(-4.0, 1.0), (400.0, 1.0)]),
+            Err(CurveError::InvalidWavelength { .. })
+        ));
+    }
+}

@@ -1,0 +1,156 @@
+//! The wavelengths that a path carries, drawn with the importance of the eye's sensitivity.
+
+use super::cie::{WAVELENGTH_MAX, WAVELENGTH_MIN};
+
+/// Steepness of the density, in 1/nm (Radziszewski et al. 2009, "An improved technique for full spectral
+/// rendering", equation 10).
+const STEEPNESS: f64 = 0.0072;
+/// Wavelength of the greatest density, in nm.
+const PEAK: f64 = 538.0;
+/// tanh(STEEPNESS * (WAVELENGTH_MIN - PEAK)); `tanh` cannot be evaluated at compile time.
+const TANH_MIN: f64 = -0.856_910_625_469_828;
+/// tanh(STEEPNESS * (WAVELENGTH_MAX - PEAK)).
+const TANH_MAX: f64 = 0.970_591_346_940_269_8;
+
+/// `N` wavelengths and the probability density with which each was drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wavelengths<const N: usize> {
+    nm: [f32; N],
+    pdf: [f32; N],
+}
+
+impl<const N: usize> Wavelengths<N> {
+    /// Draws a hero wavelength from the uniform number `u` in [0, 1), and the others from `u` rotated by
+    /// multiples of 1/N (Wilkie et al. 2014, "Hero wavelength spectral sampling").
+    ///
+    /// Each wavelength on its own has the density p(λ) ∝ 1/cosh²(0.0072 (λ - 538)) on
+    /// [`WAVELENGTH_MIN`]`..=`[`WAVELENGTH_MAX`] (Radziszewski et al. 2009).
+    #[inline]
+    pub fn sample(u: f32) -> Self {
+        let mut drawn = Self {
+            nm: [0.0; N],
+            pdf: [0.0; N],
+        };
+        for i in 0..N {
+            let shifted = u + i as f32 / N as f32;
+            let rotated = if shifted >= 1.0 {
+                shifted - 1.0
+            } else {
+                shifted
+            };
+            (drawn.nm[i], drawn.pdf[i]) = sample_visible(rotated);
+        }
+        drawn
+    }
+
+    /// The wavelengths, in nm; the hero first.
+    #[inline]
+    pub fn nm(&self) -> &[f32; N] {
+        &self.nm
+    }
+
+    /// The probability density of each wavelength, per nm.
+    #[inline]
+    pub fn pdf(&self) -> &[f32; N] {
+        &self.pdf
+    }
+}
+
+/// The wavelength in nm at the quantile `u` in [0, 1], and its density per nm.
+#[inline]
+fn sample_visible(u: f32) -> (f32, f32) {
+    const RANGE: f32 = (TANH_MAX - TANH_MIN) as f32;
+    const NORMALISATION: f32 = (STEEPNESS / (TANH_MAX - TANH_MIN)) as f32;
+    // tanh of the scaled distance from the peak: 1/cosh² is 1 - tanh².
+    let tanh = TANH_MIN as f32 + RANGE * u;
+    let nm = PEAK as f32 + tanh.atanh() * (1.0 / STEEPNESS) as f32;
+    (
+        nm.clamp(WAVELENGTH_MIN, WAVELENGTH_MAX),
+        NORMALISATION * (1.0 - tanh * tanh),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+    /// The density of Radziszewski et al. 2009, written down once more in its usual form.
+    fn density(nm: f64) -> f64 {
+        let unnormalised = |nm: f64| (0.0072 * (nm - 538.0)).cosh().powi(-2);
+        let integral =
+            ((0.0072f64 * (830.0 - 538.0)).tanh() - (0.0072f64 * (360.0 - 538.0)).tanh()) / 0.0072;
+        unnormalised(nm) / integral
+    }
+
+    #[test]
+    fn the_limits_are_the_hyperbolic_tangents_they_stand_for() {
+        assert!((TANH_MIN - (STEEPNESS * (f64::from(WAVELENGTH_MIN) - PEAK)).tanh()).abs() < 1e-14);
+        assert!((TANH_MAX - (STEEPNESS * (f64::from(WAVELENGTH_MAX) - PEAK)).tanh()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_density_integrates_to_one_and_belongs_to_the_wavelength() {
+        let steps = 100_000;
+        let mut integral = 0.0;
+        let mut previous = sample_visible(0.0);
+        for i in 0..=steps {
+            let (nm, pdf) = sample_visible(i as f32 / steps as f32);
+            assert!(
+                (f64::from(pdf) - density(f64::from(nm))).abs() < 2e-8,
+                "{nm} nm: {pdf}"
+            );
+            integral += 0.5 * f64::from(pdf + previous.1) * f64::from(nm - previous.0);
+            previous = (nm, pdf);
+        }
+        assert!((integral - 1.0).abs() < 1e-5, "{integral}");
+    }
+
+    #[test]
+    fn every_wavelength_follows_the_density() {
+        const BINS: usize = 47;
+        let draws = 40_000;
+        let mut counts = [[0u32; BINS]; 4];
+        let mut random = rand_mt::Mt::new(1);
+        for _ in 0..draws {
+            let u = (random.next_u32() >> 8) as f32 / (1u32 << 24) as f32;
+            for (i, nm) in Wavelengths::<4>::sample(u).nm().iter().enumerate() {
+                counts[i][(((nm - 360.0) / 10.0) as usize).min(BINS - 1)] += 1;
+            }
+        }
+        for counts in counts {
+            let statistic: f64 = counts
+                .iter()
+                .enumerate()
+                .map(|(bin, &count)| {
+                    let start = 360.0 + 10.0 * bin as f64;
+                    let share: f64 = (0..100)
+                        .map(|i| density(start + 0.1 * (f64::from(i) + 0.5)) * 0.1)
+                        .sum();
+                    let expected = share * f64::from(draws);
+                    (f64::from(count) - expected).powi(2) / expected
+                })
+                .sum();
+            let p = ChiSquared::new((BINS - 1) as f64).unwrap().sf(statistic);
+            assert!(p > 0.001, "chi-square {statistic}, p = {p}");
+        }
+    }
+
+    #[test]
+    fn mitsuba_draws_the_same_wavelengths() {
+        // mi.sample_rgb_spectrum(0.25): wavelength, reciprocal density.
+        let (nm, pdf) = sample_visible(0.25);
+        assert!((nm - 479.15405).abs() < 1e-3 && (1.0 / pdf - 302.17682).abs() < 1e-2);
+    }
+
+    #[test]
+    fn the_ends_stay_in_range() {
+        for u in [0.0, f32::from_bits(1.0f32.to_bits() - 1), 0.75, 0.999_999_9] {
+            let drawn = Wavelengths::<4>::sample(u);
+            for i in 0..4 {
+                assert!((WAVELENGTH_MIN..=WAVELENGTH_MAX).contains(&drawn.nm()[i]));
+                assert!(drawn.pdf()[i] > 2e-4);
+            }
+        }
+    }
+}
