@@ -1,0 +1,67 @@
+//! `area`: makes the shape in which it stands glow, on its outer side, with the same radiance in every direction.
+//!
+//! | parameter | type | meaning | default |
+//! |---|---|---|---|
+//! | `radiance` | spectrum | emitted radiance in W/(m^2 sr nm), or in linear sRGB | required |
+
+use glam::Vec3;
+
+use super::LightSample;
+use crate::scene::shapes::SurfacePoint;
+use crate::scene::{Shape, ShapeId};
+use crate::sampling::SolidAnglePdf;
+use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
+
+/// A shape that glows.
+#[derive(Clone, Debug)]
+pub struct AreaLight {
+    /// The shape.
+    pub shape: ShapeId,
+    /// The radiance it emits.
+    pub radiance: SpectralCurve,
+}
+
+impl AreaLight {
+    /// The radiance that leaves `point` of the shape in `direction` (unit, world space, away from the surface).
+    #[inline]
+    pub fn radiance<C: Colour>(
+        &self,
+        point: &SurfacePoint,
+        direction: Vec3,
+        wavelengths: &C::Wavelengths,
+    ) -> C::Spectrum {
+        if point.shading_normal.dot(direction) > 0.0 {
+            C::evaluate(&self.radiance, wavelengths)
+        } else {
+            C::Spectrum::ZERO
+        }
+    }
+
+    /// The density with which [`Self::sample`] draws the direction from `reference` to `point`.
+    #[inline]
+    pub fn pdf(&self, shapes: &[Shape], reference: Vec3, point: &SurfacePoint) -> SolidAnglePdf {
+        shapes[self.shape.index()].geometry.pdf(reference, point)
+    }
+
+    #[inline]
+    pub(super) fn sample<C: Colour>(
+        &self,
+        shapes: &[Shape],
+        reference: Vec3,
+        wavelengths: &C::Wavelengths,
+        u: [f32; 2],
+    ) -> Option<LightSample<C::Spectrum>> {
+        let sample = shapes[self.shape.index()].geometry.sample(reference, u);
+        // A point seen edge-on, or one that coincides with the reference, has no finite density.
+        if !(sample.pdf.0 > 0.0 && sample.pdf.0.is_finite()) {
+            return None;
+        }
+        let radiance = self.radiance::<C>(&sample.point, -sample.direction, wavelengths);
+        (!radiance.is_black()).then(|| LightSample {
+            direction: sample.direction,
+            distance: sample.distance,
+            weight: radiance / sample.pdf.0,
+            pdf: Some(sample.pdf),
+        })
+    }
+}

@@ -1,0 +1,44 @@
+//! `constant`: surroundings that send the same radiance from every direction.
+//!
+//! | parameter | type | meaning | default |
+//! |---|---|---|---|
+//! | `radiance` | spectrum | incident radiance in W/(m^2 sr nm), or in linear sRGB | 1 |
+
+use super::LightSample;
+use crate::sampling::{SolidAnglePdf, warp};
+use crate::spectrum::{Colour, SpectralCurve};
+
+/// Uniform surroundings.
+#[derive(Clone, Debug)]
+pub struct ConstantLight {
+    /// The radiance that arrives from everywhere.
+    pub radiance: SpectralCurve,
+}
+
+impl ConstantLight {
+    /// The radiance that arrives from any direction.
+    #[inline]
+    pub fn radiance<C: Colour>(&self, wavelengths: &C::Wavelengths) -> C::Spectrum {
+        C::evaluate(&self.radiance, wavelengths)
+    }
+
+    /// The density with which [`Self::sample`] draws any direction.
+    #[inline]
+    pub fn pdf(&self) -> SolidAnglePdf {
+        warp::SPHERE_PDF
+    }
+
+    #[inline]
+    pub(super) fn sample<C: Colour>(
+        &self,
+        wavelengths: &C::Wavelengths,
+        u: [f32; 2],
+    ) -> LightSample<C::Spectrum> {
+        LightSample {
+            direction: warp::sphere(u),
+            distance: f32::INFINITY,
+            weight: self.radiance::<C>(wavelengths) / self.pdf().0,
+            pdf: Some(self.pdf()),
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Emitters: where light comes from, and how next-event estimation draws a point of them.
+
+mod area;
+mod constant;
+mod point;
+
+pub use area::AreaLight;
+pub use constant::ConstantLight;
+pub use point::PointLight;
+
+use glam::Vec3;
+
+use super::Shape;
+use crate::sampling::SolidAnglePdf;
+use crate::spectrum::Colour;
+
+/// A source of light.
+#[derive(Clone, Debug)]
+pub enum Emitter {
+    /// `area`: a shape that glows.
+    Area(AreaLight),
+    /// `point`: an isotropic point.
+    Point(PointLight),
+    /// `constant`: the same radiance from every direction.
+    Constant(ConstantLight),
+}
+
+/// Light drawn as seen from a reference point.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample<S> {
+    /// Unit direction from the reference point to the light, in world space.
+    pub direction: Vec3,
+    /// Distance to the light in scene units; infinite for the surroundings.
+    pub distance: f32,
+    /// Radiance over density; for a point light, intensity over squared distance.
+    pub weight: S,
+    /// The density of `direction`; `None` where only this way of sampling can find the light (a point light).
+    pub pdf: Option<SolidAnglePdf>,
+}
+
+impl Emitter {
+    /// Draws light that may arrive at `reference` (world space) from the uniform numbers `u` in [0, 1); `shapes` are
+    /// the scene's. `None` where what was drawn sends no light there.
+    #[inline]
+    pub fn sample<C: Colour>(
+        &self,
+        shapes: &[Shape],
+        reference: Vec3,
+        wavelengths: &C::Wavelengths,
+        u: [f32; 2],
+    ) -> Option<LightSample<C::Spectrum>> {
+        match self {
+            Self::Area(light) => light.sample::<C>(shapes, reference, wavelengths, u),
+            Self::Point(light) => light.sample::<C>(reference, wavelengths),
+            Self::Constant(light) => Some(light.sample::<C>(wavelengths, u)),
+        }
+    }
+
+    /// Whether only next-event estimation can find this light.
+    pub fn is_delta(&self) -> bool {
+        matches!(self, Self::Point(_))
+    }
+}

@@ -1,0 +1,67 @@
+//! `disk`: an exact disk (an ellipse under non-uniform scaling), facing +z before `to_world`, of radius 1 about the origin.
+//!
+//! | parameter | type | meaning | default |
+//! |---|---|---|---|
+//! | `flip_normals` | boolean | let it face the other way | false |
+//! | `to_world` | transform | any affine transform | identity |
+
+use glam::Vec3;
+
+use super::{HitCoordinates, ShapeSample, SurfacePoint};
+use crate::sampling::warp;
+
+/// An ellipse in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disk {
+    /// Centre in world space.
+    pub center: Vec3,
+    /// From the centre to the rim along the first axis, in world space.
+    pub axis_u: Vec3,
+    /// From the centre to the rim along the second axis; not parallel to the first.
+    pub axis_v: Vec3,
+    /// Whether the side where the axes turn clockwise is the outer one.
+    pub flip_normals: bool,
+}
+
+impl Disk {
+    /// The unit normal of the side where the axes turn counter-clockwise.
+    pub fn normal(&self) -> Vec3 {
+        self.axis_u.cross(self.axis_v).normalize()
+    }
+
+    /// Where a ray meets the disk with a distance in (`near`, `far`), in units of `direction`'s length:
+    /// the distance and the coordinates along both axes.
+    pub fn intersect(&self, origin: Vec3, direction: Vec3, near: f32, far: f32) -> Option<(f32, f32, f32)> {
+        let (axis_u, axis_v) = (self.axis_u.as_dvec3(), self.axis_v.as_dvec3());
+        let plane = axis_u.cross(axis_v);
+        let to_center = self.center.as_dvec3() - origin.as_dvec3();
+        let direction = direction.as_dvec3();
+        let t = to_center.dot(plane) / direction.dot(plane);
+        let inside_range = t > f64::from(near) && t < f64::from(far);
+        if !inside_range {
+            return None;
+        }
+        let point = direction * t - to_center;
+        let u = point.cross(axis_v).dot(plane) / plane.length_squared();
+        let v = axis_u.cross(point).dot(plane) / plane.length_squared();
+        (u * u + v * v <= 1.0).then_some((t as f32, u as f32, v as f32))
+    }
+
+    pub(super) fn surface(&self, hit: &HitCoordinates) -> SurfacePoint {
+        self.point(hit.u, hit.v)
+    }
+
+    fn point(&self, u: f32, v: f32) -> SurfacePoint {
+        let position = self.center + self.axis_u * u + self.axis_v * v;
+        SurfacePoint::flat(position, self.normal()).flipped_if(self.flip_normals)
+    }
+
+    pub(super) fn area(&self) -> f32 {
+        std::f32::consts::PI * self.axis_u.cross(self.axis_v).length()
+    }
+
+    pub(super) fn sample(&self, reference: Vec3, u: [f32; 2]) -> ShapeSample {
+        let p = warp::disk(u);
+        ShapeSample::by_area(reference, self.point(p.x, p.y), self.area())
+    }
+}

@@ -1,0 +1,158 @@
+//! Shapes: what rays can hit, in world space.
+//!
+//! Triangle meshes are intersected by Embree itself; spheres, disks and cylinders are exact and bring their own
+//! intersection. Every shape can also be sampled by area (or better), so that every shape can be a light.
+
+mod cube;
+mod cylinder;
+mod disk;
+mod rectangle;
+mod sphere;
+mod triangles;
+
+pub use cylinder::Cylinder;
+pub use disk::Disk;
+pub use sphere::Sphere;
+pub use triangles::{TriangleAttributes, Triangles};
+
+pub(crate) use cube::cube;
+pub(crate) use rectangle::rectangle;
+
+use glam::Vec3;
+
+use super::{EmitterId, MaterialId};
+use crate::sampling::SolidAnglePdf;
+
+/// A shape with what it is made of.
+#[derive(Debug)]
+pub struct Shape {
+    /// Its form.
+    pub geometry: Geometry,
+    /// How it scatters light.
+    pub material: MaterialId,
+    /// The area light that it is, if it emits.
+    pub emitter: Option<EmitterId>,
+}
+
+/// The form of a shape, in world space.
+#[derive(Debug)]
+pub enum Geometry {
+    /// A triangle mesh (also rectangles and cubes, which triangles represent exactly).
+    Triangles(Triangles),
+    /// An exact sphere.
+    Sphere(Sphere),
+    /// An exact disk or ellipse.
+    Disk(Disk),
+    /// An exact cylinder mantle without caps.
+    Cylinder(Cylinder),
+}
+
+/// A point of a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// Position in world space, on the surface as precisely as `f32` can say it.
+    pub position: Vec3,
+    /// Unit normal of the true surface, in world space, on the outer side.
+    pub geometric_normal: Vec3,
+    /// Unit normal for shading (interpolated where the mesh has vertex normals), in world space, on the outer side.
+    pub shading_normal: Vec3,
+}
+
+impl SurfacePoint {
+    /// A point whose shading normal is the geometric one.
+    pub(crate) fn flat(position: Vec3, normal: Vec3) -> Self {
+        Self { position, geometric_normal: normal, shading_normal: normal }
+    }
+
+    /// The same point with its outer side turned inside.
+    pub(crate) fn flipped_if(mut self, flip: bool) -> Self {
+        if flip {
+            self.geometric_normal = -self.geometric_normal;
+            self.shading_normal = -self.shading_normal;
+        }
+        self
+    }
+}
+
+/// A point of a shape drawn as seen from a reference point.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeSample {
+    /// The point drawn.
+    pub point: SurfacePoint,
+    /// Unit direction from the reference point to it, in world space.
+    pub direction: Vec3,
+    /// Distance from the reference point, in scene units.
+    pub distance: f32,
+    /// The density of `direction`.
+    pub pdf: SolidAnglePdf,
+}
+
+impl ShapeSample {
+    /// The sample for a point drawn uniformly by area from a surface of `area`.
+    pub(crate) fn by_area(reference: Vec3, point: SurfacePoint, area: f32) -> Self {
+        let offset = point.position - reference;
+        let distance = offset.length();
+        let direction = offset / distance;
+        let cosine = direction.dot(point.geometric_normal).abs();
+        let pdf = crate::sampling::AreaPdf(1.0 / area).to_solid_angle(distance, cosine);
+        Self { point, direction, distance, pdf }
+    }
+}
+
+/// Where a ray met a shape, in the terms of the intersection layer.
+#[derive(Clone, Copy, Debug)]
+pub struct HitCoordinates {
+    /// The triangle, or 0.
+    pub primitive: u32,
+    /// First surface coordinate (barycentric for triangles, the shape's own otherwise).
+    pub u: f32,
+    /// Second surface coordinate.
+    pub v: f32,
+    /// The geometric normal as the intersection reported it, any length, in world space.
+    pub normal: Vec3,
+}
+
+impl Geometry {
+    /// The surface at a hit.
+    #[inline]
+    pub fn surface(&self, hit: &HitCoordinates) -> SurfacePoint {
+        match self {
+            Self::Triangles(shape) => shape.surface(hit),
+            Self::Sphere(shape) => shape.surface(hit),
+            Self::Disk(shape) => shape.surface(hit),
+            Self::Cylinder(shape) => shape.surface(hit),
+        }
+    }
+
+    /// Draws a point of the shape as seen from `reference` (world space).
+    #[inline]
+    pub fn sample(&self, reference: Vec3, u: [f32; 2]) -> ShapeSample {
+        match self {
+            Self::Triangles(shape) => shape.sample(reference, u),
+            Self::Sphere(shape) => shape.sample(reference, u),
+            Self::Disk(shape) => shape.sample(reference, u),
+            Self::Cylinder(shape) => shape.sample(reference, u),
+        }
+    }
+
+    /// The density with which [`Self::sample`] draws the direction from `reference` to `point`.
+    #[inline]
+    pub fn pdf(&self, reference: Vec3, point: &SurfacePoint) -> SolidAnglePdf {
+        match self {
+            Self::Sphere(shape) => shape.pdf(reference, point),
+            Self::Triangles(_) | Self::Disk(_) | Self::Cylinder(_) => {
+                ShapeSample::by_area(reference, *point, self.area()).pdf
+            }
+        }
+    }
+
+    /// Surface area in squared scene units.
+    pub fn area(&self) -> f32 {
+        match self {
+            Self::Triangles(shape) => shape.area(),
+            Self::Sphere(shape) => shape.area(),
+            Self::Disk(shape) => shape.area(),
+            Self::Cylinder(shape) => shape.area(),
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! `rectangle`: the square [-1, 1] x [-1, 1] in the plane z = 0, facing +z before `to_world`.
+//!
+//! | parameter | type | meaning | default |
+//! |---|---|---|---|
+//! | `flip_normals` | boolean | let it face the other way | false |
+//! | `to_world` | transform | any affine transform | identity |
+
+use crate::scene::mesh::MeshData;
+
+/// The rectangle in its own space.
+pub(crate) fn rectangle() -> MeshData {
+    MeshData {
+        positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
+        normals: None,
+        uvs: Some(vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),
+        triangles: vec![[0, 1, 2], [2, 3, 0]],
+    }
+}
