@@ -4,7 +4,7 @@ mod film;
 mod perspective;
 
 pub use film::{CropWindow, FilmDescription, FilmError, ImageSize, PixelFormat, ReconstructionFilter};
-pub use perspective::{CameraError, FieldOfView, FovAxis, Perspective};
+pub use perspective::{CameraError, FieldOfView, FovAxis, Perspective, Projection};
 
 use glam::Vec3;
 

@@ -169,6 +169,12 @@ pub struct Projection {
 }
 
 impl Projection {
+    /// The distance at which a ray of the camera with this unit direction meets the far clipping plane.
+    pub fn far_along(&self, direction: Vec3) -> f32 {
+        let normal = self.per_column.cross(self.per_row);
+        self.far * self.corner.dot(normal) / direction.dot(normal)
+    }
+
     /// The ray through `raster`, in pixels from the upper left corner of the whole film (not of its crop window).
     #[inline]
     pub fn ray(&self, raster: Vec2) -> CameraRay {
@@ -212,6 +218,7 @@ mod tests {
         let ray = camera(FovAxis::X).project(ImageSize { width: 10, height: 10 }).ray(Vec2::ZERO);
         assert!((ray.near * ray.direction.z - 1.0).abs() < 1e-6);
         assert!((ray.far * ray.direction.z - 100.0).abs() < 1e-4);
+        assert!((camera(FovAxis::X).project(ImageSize { width: 10, height: 10 }).far_along(ray.direction) - ray.far).abs() < 1e-3);
     }
 
     #[test]

@@ -23,15 +23,25 @@ pub struct Disk {
     pub flip_normals: bool,
 }
 
+/// Where a ray meets a disk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiskHit {
+    /// Distance in units of the ray direction's length.
+    pub t: f32,
+    /// Coordinate along the first axis, in [-1, 1].
+    pub u: f32,
+    /// Coordinate along the second axis, in [-1, 1].
+    pub v: f32,
+}
+
 impl Disk {
     /// The unit normal of the side where the axes turn counter-clockwise.
     pub fn normal(&self) -> Vec3 {
         self.axis_u.cross(self.axis_v).normalize()
     }
 
-    /// Where a ray meets the disk with a distance in (`near`, `far`), in units of `direction`'s length:
-    /// the distance and the coordinates along both axes.
-    pub fn intersect(&self, origin: Vec3, direction: Vec3, near: f32, far: f32) -> Option<(f32, f32, f32)> {
+    /// Where a ray meets the disk with a distance in (`near`, `far`).
+    pub fn intersect(&self, origin: Vec3, direction: Vec3, near: f32, far: f32) -> Option<DiskHit> {
         let (axis_u, axis_v) = (self.axis_u.as_dvec3(), self.axis_v.as_dvec3());
         let plane = axis_u.cross(axis_v);
         let to_center = self.center.as_dvec3() - origin.as_dvec3();
@@ -44,7 +54,8 @@ impl Disk {
         let point = direction * t - to_center;
         let u = point.cross(axis_v).dot(plane) / plane.length_squared();
         let v = axis_u.cross(point).dot(plane) / plane.length_squared();
-        (u * u + v * v <= 1.0).then_some((t as f32, u as f32, v as f32))
+        let hit = DiskHit { t: t as f32, u: u as f32, v: v as f32 };
+        (u * u + v * v <= 1.0).then_some(hit)
     }
 
     pub(super) fn surface(&self, hit: &HitCoordinates) -> SurfacePoint {

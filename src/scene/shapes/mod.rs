@@ -10,8 +10,8 @@ mod rectangle;
 mod sphere;
 mod triangles;
 
-pub use cylinder::Cylinder;
-pub use disk::Disk;
+pub use cylinder::{Cylinder, CylinderHit};
+pub use disk::{Disk, DiskHit};
 pub use sphere::Sphere;
 pub use triangles::{TriangleAttributes, Triangles};
 

@@ -1,0 +1,126 @@
+//! OpenEXR files: the image in linear sRGB, with everything about how it was made as attributes.
+
+use std::path::Path;
+
+use exr::meta::attribute::{AttributeValue, Chromaticities, Text};
+use exr::prelude::*;
+
+use super::{FilmFileError, Image, WholeFile};
+use crate::scene::{ImageSize, PixelFormat};
+
+/// How an EXR is written.
+#[derive(Clone, Debug)]
+pub struct ExrOptions {
+    /// Which channels.
+    pub format: PixelFormat,
+    /// 16-bit instead of 32-bit numbers.
+    pub half_precision: bool,
+    /// Attributes: name and value.
+    pub attributes: Vec<(String, String)>,
+}
+
+impl Default for ExrOptions {
+    fn default() -> Self {
+        Self { format: PixelFormat::Rgb, half_precision: false, attributes: Vec::new() }
+    }
+}
+
+/// Writes an image as EXR: scan lines, ZIP compression, primaries of ITU-R BT.709.
+pub fn write_exr(path: &Path, image: &Image, options: &ExrOptions) -> std::result::Result<(), FilmFileError> {
+    let size = image.size();
+    let column = |value: &dyn Fn(&[f32; 3]) -> f32| {
+        let values = image.pixels().iter().map(value);
+        if options.half_precision {
+            FlatSamples::F16(values.map(f16::from_f32).collect())
+        } else {
+            FlatSamples::F32(values.collect())
+        }
+    };
+    // Channels of an EXR stand in alphabetical order.
+    let channels: SmallVec<[AnyChannel<FlatSamples>; 4]> = match options.format {
+        PixelFormat::Rgb => [("B", 2), ("G", 1), ("R", 0)]
+            .into_iter()
+            .map(|(name, channel)| AnyChannel::new(name, column(&|pixel| pixel[channel])))
+            .collect(),
+        PixelFormat::Luminance => {
+            let luminance = |p: &[f32; 3]| 0.212_671 * p[0] + 0.715_160 * p[1] + 0.072_169 * p[2];
+            std::iter::once(AnyChannel::new("Y", column(&luminance))).collect()
+        }
+    };
+    let mut attributes = LayerAttributes::default();
+    attributes.software_name = Some(Text::from(concat!("cohort ", env!("CARGO_PKG_VERSION"))));
+    for (name, value) in &options.attributes {
+        if let (Some(name), Some(value)) = (Text::new_or_none(name), Text::new_or_none(value)) {
+            attributes.other.insert(name, AttributeValue::Text(value));
+        }
+    }
+    let layer = Layer::new(
+        Vec2(size.width as usize, size.height as usize),
+        attributes,
+        Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS },
+        AnyChannels::sort(channels),
+    );
+    let mut file = exr::image::Image::from_layer(layer);
+    file.attributes.chromaticities = Some(Chromaticities {
+        red: Vec2(0.64, 0.33),
+        green: Vec2(0.30, 0.60),
+        blue: Vec2(0.15, 0.06),
+        white: Vec2(0.3127, 0.3290),
+    });
+    WholeFile::create(path)?.finish(|writer| {
+        file.write().to_buffered(writer).map_err(|error| FilmFileError::Encode {
+            path: path.to_owned(),
+            message: error.to_string(),
+        })
+    })
+}
+
+/// Reads the R, G and B channels of an EXR.
+pub fn read_exr(path: &Path) -> std::result::Result<Image, FilmFileError> {
+    let refuse = |message: String| FilmFileError::Read { path: path.to_owned(), message };
+    let file = exr::prelude::read_first_rgba_layer_from_file(
+        path,
+        |resolution, _| (resolution.width(), vec![[0.0_f32; 3]; resolution.area()]),
+        |(width, pixels), position, (r, g, b, _): (f32, f32, f32, f32)| {
+            pixels[position.y() * *width + position.x()] = [r, g, b];
+        },
+    )
+    .map_err(|error| refuse(error.to_string()))?;
+    let resolution = file.layer_data.size;
+    let side = |n: usize| u32::try_from(n).map_err(|_| refuse("it is too large".into()));
+    let size = ImageSize { width: side(resolution.width())?, height: side(resolution.height())? };
+    let mut image = Image::black(size);
+    let (_, pixels) = file.layer_data.channel_data.pixels;
+    for (index, pixel) in pixels.into_iter().enumerate() {
+        *image.pixel_mut(index as u32 % size.width, index as u32 / size.width) = pixel;
+    }
+    Ok(image)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let mut image = Image::black(ImageSize { width: 3, height: 2 });
+        *image.pixel_mut(2, 1) = [1.5, -0.25, 1e6];
+        *image.pixel_mut(0, 0) = [0.1, 0.2, 0.3];
+        let options = ExrOptions {
+            attributes: vec![("cohort:strategy".into(), "roulette".into())],
+            ..ExrOptions::default()
+        };
+        write_exr(&path, &image, &options).unwrap();
+        assert_eq!(read_exr(&path).unwrap(), image);
+        let meta = MetaData::read_from_file(&path, false).unwrap();
+        let attribute = meta.headers[0].own_attributes.other.get(&Text::from("cohort:strategy"));
+        assert_eq!(attribute, Some(&AttributeValue::Text(Text::from("roulette"))));
+    }
+
+    #[test]
+    fn a_missing_file_is_an_error() {
+        assert!(read_exr(Path::new("no such file.exr")).is_err());
+    }
+}

@@ -1,0 +1,17 @@
+//! The film: which sample falls where, the sums per pixel, and the files that show them.
+
+mod exr_file;
+mod filter;
+mod image;
+mod png_file;
+mod statistics;
+mod tiles;
+mod whole_file;
+
+pub use exr_file::{ExrOptions, read_exr, write_exr};
+pub use filter::{FilterSample, FilterSampler};
+pub use image::{FilmFileError, Image};
+pub use png_file::write_png;
+pub use statistics::PixelStatistics;
+pub use tiles::{Film, FilmTile, TILE_SIDE};
+pub use whole_file::WholeFile;

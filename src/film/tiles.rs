@@ -1,0 +1,120 @@
+//! The film as tiles, each owned by whoever renders it.
+
+use super::{Image, PixelStatistics};
+use crate::scene::ImageSize;
+
+/// Side of a tile in pixels.
+pub const TILE_SIDE: u32 = 16;
+
+/// A square of the film (less at the right and lower border).
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmTile {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// Its size.
+    pub size: ImageSize,
+    /// Its pixels, row by row.
+    pub pixels: Vec<PixelStatistics>,
+}
+
+impl FilmTile {
+    /// Column and row on the film of the pixel with this index in [`Self::pixels`].
+    #[inline]
+    pub fn position(&self, index: usize) -> (u32, u32) {
+        let index = index as u32;
+        (self.x + index % self.size.width, self.y + index / self.size.width)
+    }
+}
+
+/// The sums of all pixels of the crop window, tile by tile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    size: ImageSize,
+    tiles: Vec<FilmTile>,
+}
+
+impl Film {
+    /// A film without samples.
+    pub fn new(size: ImageSize) -> Self {
+        let starts = |length: u32| (0..length).step_by(TILE_SIDE as usize);
+        let tile = |x: u32, y: u32| {
+            let size = ImageSize {
+                width: TILE_SIDE.min(size.width - x),
+                height: TILE_SIDE.min(size.height - y),
+            };
+            FilmTile { x, y, size, pixels: vec![PixelStatistics::default(); size.pixels()] }
+        };
+        let tiles = starts(size.height)
+            .flat_map(|y| starts(size.width).map(move |x| tile(x, y)))
+            .collect();
+        Self { size, tiles }
+    }
+
+    /// Size in pixels.
+    pub fn size(&self) -> ImageSize {
+        self.size
+    }
+
+    /// The tiles, row by row.
+    pub fn tiles(&self) -> &[FilmTile] {
+        &self.tiles
+    }
+
+    /// The tiles, row by row.
+    pub fn tiles_mut(&mut self) -> &mut [FilmTile] {
+        &mut self.tiles
+    }
+
+    /// The mean of every pixel.
+    pub fn image(&self) -> Image {
+        self.map(|pixel| pixel.mean().map(|value| value as f32))
+    }
+
+    /// The variance of the mean of every pixel, or `None` if one does not know it.
+    pub fn variance(&self) -> Option<Image> {
+        let known = self.pixels().all(|pixel| pixel.units >= 2);
+        known.then(|| self.map(|pixel| pixel.variance_of_mean().unwrap_or_default().map(|v| v as f32)))
+    }
+
+    /// The pixels in no particular order.
+    pub fn pixels(&self) -> impl Iterator<Item = &PixelStatistics> {
+        self.tiles.iter().flat_map(|tile| &tile.pixels)
+    }
+
+    fn map(&self, value: impl Fn(&PixelStatistics) -> [f32; 3]) -> Image {
+        let mut image = Image::black(self.size);
+        for tile in &self.tiles {
+            for (index, pixel) in tile.pixels.iter().enumerate() {
+                let (x, y) = tile.position(index);
+                *image.pixel_mut(x, y) = value(pixel);
+            }
+        }
+        image
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_pixel_once() {
+        let mut film = Film::new(ImageSize { width: 37, height: 18 });
+        for tile in film.tiles_mut() {
+            for index in 0..tile.pixels.len() {
+                let (x, y) = tile.position(index);
+                tile.pixels[index].add_unit(1, [f64::from(x), f64::from(y), 1.0]);
+            }
+        }
+        let image = film.image();
+        for y in 0..18 {
+            for x in 0..37 {
+                assert_eq!(image.pixel(x, y), [x as f32, y as f32, 1.0]);
+            }
+        }
+        assert!(film.pixels().all(|pixel| pixel.samples == 1));
+        assert_eq!(film.variance(), None);
+    }
+}

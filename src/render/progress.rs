@@ -1,0 +1,52 @@
+//! Watching a render, and stopping it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// How far a render is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// The share of the budget that is used, in [0, 1].
+    pub share: f64,
+    /// Time since the first ray.
+    pub elapsed: Duration,
+    /// Camera paths so far, over all pixels.
+    pub camera_paths: u64,
+    /// Rays so far.
+    pub rays: u64,
+    /// Camera paths per pixel so far, in the mean.
+    pub samples_per_pixel: f64,
+}
+
+/// Somebody who wants to know how far a render is.
+pub trait Observer: Sync {
+    /// Called a few times a second from one of the rendering threads; it should return soon.
+    fn progress(&self, progress: &Progress);
+}
+
+/// Nobody.
+impl Observer for () {
+    fn progress(&self, _progress: &Progress) {}
+}
+
+/// Asks a render to stop after the batches that are under way. Clones are the same flag.
+#[derive(Clone, Debug, Default)]
+pub struct StopFlag(Arc<AtomicBool>);
+
+impl StopFlag {
+    /// A flag that is not raised.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Asks to stop.
+    pub fn raise(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether somebody asked to stop.
+    pub fn is_raised(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,77 @@
+//! What a render can be told beside the scene.
+
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::time::Duration;
+
+use crate::embree::BuildQuality;
+use crate::transport::DirectLight;
+use crate::walk::{Roulette, Strategy};
+
+/// When a render is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Budget {
+    /// When every pixel has so many camera paths.
+    SamplesPerPixel(NonZeroU32),
+    /// After so much wall-clock time, counted from when the scene is loaded and its acceleration structure is built.
+    Time(Duration),
+}
+
+/// How colours are carried along paths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColourMode {
+    /// Four wavelengths a path.
+    #[default]
+    Spectral,
+    /// Three channels.
+    Rgb,
+}
+
+impl ColourMode {
+    /// The name in metadata.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Spectral => "spectral, 4 wavelengths a path",
+            Self::Rgb => "rgb",
+        }
+    }
+}
+
+/// The settings of a render. Start from [`Settings::default`] and change what matters.
+#[derive(Debug)]
+pub struct Settings {
+    /// Who decides how long paths are followed.
+    pub strategy: Box<dyn Strategy>,
+    /// When the render is done.
+    pub budget: Budget,
+    /// Threads that build the acceleration structure and that trace paths.
+    pub threads: NonZeroUsize,
+    /// Seed of all random streams.
+    pub seed: u64,
+    /// How colours are carried.
+    pub colour: ColourMode,
+    /// How direct light is found.
+    pub direct_light: DirectLight,
+    /// Most segments of a path, camera ray included; `None` takes what the scene says.
+    pub max_depth: Option<NonZeroU32>,
+    /// Watertight intersection, at 15 to 25 % of the ray rate.
+    pub robust: bool,
+    /// Speed of building the acceleration structure against speed of the rays.
+    pub build_quality: BuildQuality,
+}
+
+impl Default for Settings {
+    /// Roulette as in the paper, 64 samples per pixel, all cores, seed 0, spectral, next-event estimation.
+    fn default() -> Self {
+        Self {
+            strategy: Box::new(Roulette::default()),
+            budget: Budget::SamplesPerPixel(NonZeroU32::MIN.saturating_add(63)),
+            threads: std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN),
+            seed: 0,
+            colour: ColourMode::default(),
+            direct_light: DirectLight::default(),
+            max_depth: None,
+            robust: false,
+            build_quality: BuildQuality::High,
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! Path states as structures of arrays. Buffers are kept between batches: after the first, nothing is allocated.
+
+use glam::Vec3;
+
+use crate::embree::{Hits, Rays};
+use crate::sampling::{Frame, SolidAnglePdf};
+use crate::scene::Bsdf;
+use crate::spectrum::Colour;
+
+/// The camera paths of a batch: what all particles that descend from one have in common. Paths of one pixel stand side
+/// by side.
+pub(super) struct CameraPaths<C: Colour> {
+    /// The wavelengths that the path carries.
+    pub wavelengths: Vec<C::Wavelengths>,
+    /// What has arrived so far at the camera.
+    pub radiance: Vec<C::Spectrum>,
+    /// The reconstruction filter's weight of the sample.
+    pub filter_weight: Vec<f32>,
+}
+
+/// Rays on their way to the next vertex.
+pub(super) struct Segments<C: Colour> {
+    /// The camera path that each descends from; nondecreasing.
+    pub path: Vec<u32>,
+    /// Throughput, with the bsdf of the vertex that it left and the compensation for all decisions so far.
+    pub throughput: Vec<C::Spectrum>,
+    /// The density with which its direction was drawn; infinite for camera rays, which no other technique can draw.
+    pub direction_pdf: Vec<SolidAnglePdf>,
+    /// The rays themselves, in world space.
+    pub rays: Rays,
+    /// What they hit.
+    pub hits: Hits,
+}
+
+/// Surface points that scatter light.
+pub(super) struct Vertices<C: Colour> {
+    /// The camera path that each descends from; nondecreasing.
+    pub path: Vec<u32>,
+    /// Throughput on arrival.
+    pub throughput: Vec<C::Spectrum>,
+    /// Position in world space.
+    pub position: Vec<Vec3>,
+    /// Unit geometric normal in world space.
+    pub geometric_normal: Vec<Vec3>,
+    /// Shading frame of the side that was hit.
+    pub frame: Vec<Frame>,
+    /// Unit direction to where the path comes from, in that frame.
+    pub outgoing: Vec<Vec3>,
+    /// The bsdf of that side at the path's wavelengths.
+    pub bsdf: Vec<Bsdf<C::Spectrum>>,
+}
+
+/// Rays that ask whether light arrives.
+pub(super) struct ShadowRays<C: Colour> {
+    /// The camera path that each contributes to.
+    pub path: Vec<u32>,
+    /// What it contributes if nothing is in the way.
+    pub contribution: Vec<C::Spectrum>,
+    /// The rays themselves, in world space.
+    pub rays: Rays,
+}
+
+/// What the strategy is shown of the vertices, one entry each.
+#[derive(Default)]
+pub(super) struct Particles {
+    pub importance: Vec<f32>,
+    pub albedo: Vec<f32>,
+    pub shininess: Vec<f32>,
+    pub group: Vec<u32>,
+}
+
+impl<C: Colour> CameraPaths<C> {
+    pub fn new() -> Self {
+        Self { wavelengths: Vec::new(), radiance: Vec::new(), filter_weight: Vec::new() }
+    }
+
+    pub fn clear(&mut self) {
+        self.wavelengths.clear();
+        self.radiance.clear();
+        self.filter_weight.clear();
+    }
+}
+
+impl<C: Colour> Segments<C> {
+    pub fn new() -> Self {
+        Self {
+            path: Vec::new(),
+            throughput: Vec::new(),
+            direction_pdf: Vec::new(),
+            rays: Rays::default(),
+            hits: Hits::default(),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.path.len()
+    }
+
+    /// Empties the states and makes room for `count` rays, which the caller sets one by one.
+    pub fn restart(&mut self, count: usize) {
+        self.path.clear();
+        self.throughput.clear();
+        self.direction_pdf.clear();
+        self.rays.resize(count);
+    }
+
+    /// Adds the state of the next ray; the ray itself is set in `rays` at the same index.
+    #[inline]
+    pub fn push(&mut self, path: u32, throughput: C::Spectrum, direction_pdf: SolidAnglePdf) {
+        self.path.push(path);
+        self.throughput.push(throughput);
+        self.direction_pdf.push(direction_pdf);
+    }
+}
+
+impl<C: Colour> Vertices<C> {
+    pub fn new() -> Self {
+        Self {
+            path: Vec::new(),
+            throughput: Vec::new(),
+            position: Vec::new(),
+            geometric_normal: Vec::new(),
+            frame: Vec::new(),
+            outgoing: Vec::new(),
+            bsdf: Vec::new(),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.path.len()
+    }
+
+    pub fn clear(&mut self) {
+        self.path.clear();
+        self.throughput.clear();
+        self.position.clear();
+        self.geometric_normal.clear();
+        self.frame.clear();
+        self.outgoing.clear();
+        self.bsdf.clear();
+    }
+}
+
+impl<C: Colour> ShadowRays<C> {
+    pub fn new() -> Self {
+        Self { path: Vec::new(), contribution: Vec::new(), rays: Rays::default() }
+    }
+}
+
+impl Particles {
+    pub fn clear(&mut self) {
+        self.importance.clear();
+        self.albedo.clear();
+        self.shininess.clear();
+        self.group.clear();
+    }
+}

@@ -1,0 +1,45 @@
+//! Stage: camera paths start.
+
+use glam::Vec2;
+
+use super::batch::{CameraPaths, Segments};
+use super::engine::{Engine, TileJob};
+use crate::film::FilmTile;
+use crate::sampling::{RandomStream, SolidAnglePdf};
+use crate::spectrum::{Colour, SpectrumArithmetic};
+
+/// Starts `job.samples` paths for every pixel of the tile, pixel by pixel.
+pub(super) fn start<C: Colour>(
+    engine: &Engine,
+    job: &TileJob,
+    tile: &FilmTile,
+    random: &mut RandomStream,
+    paths: &mut CameraPaths<C>,
+    segments: &mut Segments<C>,
+) {
+    let crop = engine.scene.film.crop;
+    let corner = Vec2::new(crop.x as f32, crop.y as f32);
+    paths.clear();
+    segments.restart(tile.pixels.len() * job.samples as usize);
+    for pixel in 0..tile.pixels.len() {
+        let (x, y) = tile.position(pixel);
+        let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+        for _ in 0..job.samples {
+            let sample = engine.filter.sample(x, y, random.uniform_2d());
+            let u = if C::RANDOM_NUMBERS > 0 { random.uniform() } else { 0.0 };
+            let index = paths.radiance.len();
+            paths.wavelengths.push(C::sample_wavelengths(u));
+            paths.radiance.push(C::Spectrum::ZERO);
+            paths.filter_weight.push(sample.weight);
+            let ray = engine.projection.ray(centre + sample.offset);
+            segments.push(index as u32, C::Spectrum::ONE, SolidAnglePdf(f32::INFINITY));
+            segments.rays.set(
+                index,
+                ray.origin.into(),
+                ray.direction.into(),
+                ray.near,
+                ray.far,
+            );
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Stage: next-event estimation. Every vertex looks at one point of one emitter.
+
+use glam::Vec3;
+
+use super::batch::{CameraPaths, ShadowRays, Vertices};
+use super::engine::Engine;
+use super::offset::leave_surface;
+use crate::sampling::{RandomStream, power_heuristic};
+use crate::spectrum::{Colour, SpectrumArithmetic};
+
+/// Shadow rays end this share of their length before the light, so that they do not meet it.
+const SHADOW_END: f32 = 1.0 - 1e-4;
+
+/// Draws light for every vertex and fills `shadow` with the rays that decide whether it arrives.
+///
+/// The emitter is chosen uniformly; a path's contribution is MIS-weighted against hitting the same light by chance.
+pub(super) fn sample_lights<C: Colour>(
+    engine: &Engine,
+    paths: &CameraPaths<C>,
+    vertices: &Vertices<C>,
+    random: &mut RandomStream,
+    shadow: &mut ShadowRays<C>,
+) {
+    let emitters = &engine.scene.emitters;
+    shadow.path.clear();
+    shadow.contribution.clear();
+    shadow.rays.resize(vertices.len());
+    for i in 0..vertices.len() {
+        let choice = random.uniform();
+        let u = random.uniform_2d();
+        let chosen = ((choice * emitters.len() as f32) as usize).min(emitters.len() - 1);
+        let path = vertices.path[i];
+        let position = vertices.position[i];
+        let wavelengths = &paths.wavelengths[path as usize];
+        let Some(light) =
+            emitters[chosen].sample::<C>(&engine.scene.shapes, position, wavelengths, u)
+        else {
+            continue;
+        };
+        let incident = vertices.frame[i].to_local(light.direction);
+        let bsdf = vertices.bsdf[i].evaluate(vertices.outgoing[i], incident);
+        let mis = match light.pdf {
+            Some(pdf) => power_heuristic(pdf.chosen_with(engine.light_choice), bsdf.pdf),
+            None => 1.0,
+        };
+        let contribution =
+            vertices.throughput[i] * bsdf.value * light.weight * (mis / engine.light_choice);
+        if contribution.is_black() {
+            continue;
+        }
+        let origin = leave_surface(position, vertices.geometric_normal[i], light.direction);
+        let (direction, length) = towards(position, origin, light.direction, light.distance);
+        shadow.rays.set(shadow.path.len(), origin.into(), direction.into(), 0.0, length * SHADOW_END);
+        shadow.path.push(path);
+        shadow.contribution.push(contribution);
+    }
+    shadow.rays.resize(shadow.path.len());
+}
+
+/// Unit direction and distance from the `origin` of a shadow ray to the light that was drawn from `position`.
+#[inline]
+fn towards(position: Vec3, origin: Vec3, direction: Vec3, distance: f32) -> (Vec3, f32) {
+    if distance == f32::INFINITY {
+        return (direction, distance);
+    }
+    let offset = position + direction * distance - origin;
+    let length = offset.length();
+    if length > 0.0 { (offset / length, length) } else { (direction, 0.0) }
+}
+
+/// Adds what the unoccluded shadow rays carry.
+pub(super) fn add_unoccluded<C: Colour>(shadow: &ShadowRays<C>, paths: &mut CameraPaths<C>) {
+    for i in 0..shadow.path.len() {
+        if !shadow.rays.occluded(i) {
+            paths.radiance[shadow.path[i] as usize] += shadow.contribution[i];
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Stage: rays arrive. Emitted light is added, and surfaces that scatter become the vertices of the next stages.
+
+use glam::Vec3;
+
+use super::batch::{CameraPaths, Segments, Vertices};
+use super::engine::Engine;
+use super::settings::DirectLight;
+use crate::sampling::{Frame, SolidAnglePdf, power_heuristic};
+use crate::scene::{Emitter, HitCoordinates, Side};
+use crate::spectrum::{Colour, SpectrumArithmetic};
+
+/// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
+/// those that met a surface which scatters light, in the order of the segments.
+///
+/// `camera_rays` says whether the segments come from the camera; `scatters` is false at the last depth, where paths end.
+pub(super) fn arrive<C: Colour>(
+    engine: &Engine,
+    paths: &mut CameraPaths<C>,
+    segments: &Segments<C>,
+    vertices: &mut Vertices<C>,
+    camera_rays: bool,
+    scatters: bool,
+) {
+    vertices.clear();
+    let hidden = camera_rays && engine.settings.hide_emitters;
+    for i in 0..segments.len() {
+        let path = segments.path[i];
+        let wavelengths = &paths.wavelengths[path as usize];
+        let direction = Vec3::from(segments.rays.direction(i));
+        let hit = segments.hits.geometry_id(i);
+        let Some(shape) = engine.accelerator.shape(&engine.scene, hit) else {
+            if let Some(light) = engine.surroundings().filter(|_| !hidden) {
+                let weight = engine.mis_weight(segments.direction_pdf[i], light.pdf());
+                let radiance = light.radiance::<C>(wavelengths) * weight;
+                paths.radiance[path as usize] += segments.throughput[i] * radiance;
+            }
+            continue;
+        };
+        let [u, v] = segments.hits.uv(i);
+        let point = shape.geometry.surface(&HitCoordinates {
+            primitive: segments.hits.primitive_id(i),
+            u,
+            v,
+            normal: segments.hits.normal(i).into(),
+        });
+        if let Some(Emitter::Area(light)) = shape.emitter.map(|id| &engine.scene.emitters[id.index()]) {
+            let radiance = light.radiance::<C>(&point, -direction, wavelengths);
+            if !radiance.is_black() {
+                let origin = Vec3::from(segments.rays.origin(i));
+                let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
+                let weight = engine.mis_weight(segments.direction_pdf[i], light_pdf);
+                paths.radiance[path as usize] += segments.throughput[i] * (radiance * weight);
+            }
+        }
+        if !scatters {
+            continue;
+        }
+        let Some(side) = Side::seen_with(-direction.dot(point.shading_normal)) else { continue };
+        let material = &engine.scene.materials[shape.material.index()];
+        let Some(bsdf) = material.bsdf::<C>(side, wavelengths) else { continue };
+        let frame = Frame::about(side.facing(point.shading_normal));
+        vertices.path.push(path);
+        vertices.throughput.push(segments.throughput[i]);
+        vertices.position.push(point.position);
+        vertices.geometric_normal.push(point.geometric_normal);
+        vertices.outgoing.push(frame.to_local(-direction));
+        vertices.frame.push(frame);
+        vertices.bsdf.push(bsdf);
+    }
+}
+
+impl Engine {
+    /// The weight of light found by following a direction drawn with `direction_pdf`, where next-event estimation
+    /// draws the same direction with `light_pdf` once it has chosen that light.
+    #[inline]
+    fn mis_weight(&self, direction_pdf: SolidAnglePdf, light_pdf: SolidAnglePdf) -> f32 {
+        match self.settings.direct_light {
+            DirectLight::NextEvent => {
+                power_heuristic(direction_pdf, light_pdf.chosen_with(self.light_choice))
+            }
+            DirectLight::Off => 1.0,
+        }
+    }
+}

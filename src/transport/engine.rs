@@ -1,0 +1,212 @@
+//! One batch from the camera to its end.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::accelerator::Accelerator;
+use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
+use super::settings::{DirectLight, TransportSettings};
+use super::statistics::TraceStatistics;
+use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_stage};
+use crate::embree::Coherence;
+use crate::film::{FilmTile, FilterSampler};
+use crate::sampling::{RandomStream, StreamKey};
+use crate::scene::{ConstantLight, Emitter, Projection, Scene};
+use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::walk::{Offspring, Scope, Strategy};
+
+/// After so many bounces a batch is cut off and the cut is reported: only light that never dies gets here.
+const MAX_BOUNCES: u32 = 1 << 16;
+
+/// A scene ready to be traced, shared by all threads.
+pub struct Engine {
+    pub(super) scene: Arc<Scene>,
+    pub(super) accelerator: Accelerator,
+    pub(super) settings: TransportSettings,
+    pub(super) strategy: Box<dyn Strategy>,
+    pub(super) projection: Projection,
+    pub(super) filter: FilterSampler,
+    /// The probability with which next-event estimation chooses each emitter.
+    pub(super) light_choice: f32,
+}
+
+/// One batch: some samples of every pixel of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TileJob {
+    /// The random numbers of the batch.
+    pub key: StreamKey,
+    /// Camera paths per pixel, positive.
+    pub samples: u32,
+}
+
+impl Engine {
+    /// An engine for `scene`, whose shapes `accelerator` holds.
+    pub fn new(
+        scene: Arc<Scene>,
+        accelerator: Accelerator,
+        settings: TransportSettings,
+        strategy: Box<dyn Strategy>,
+    ) -> Self {
+        Self {
+            projection: scene.camera.project(scene.film.size),
+            filter: FilterSampler::new(&scene.film),
+            light_choice: 1.0 / scene.emitters.len().max(1) as f32,
+            scene,
+            accelerator,
+            settings,
+            strategy,
+        }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The strategy.
+    pub fn strategy(&self) -> &dyn Strategy {
+        &*self.strategy
+    }
+
+    /// The light that surrounds the scene, if there is one.
+    #[inline]
+    pub(super) fn surroundings(&self) -> Option<&ConstantLight> {
+        self.scene.emitters.iter().find_map(|emitter| match emitter {
+            Emitter::Constant(light) => Some(light),
+            Emitter::Area(_) | Emitter::Point(_) => None,
+        })
+    }
+}
+
+/// The memory of one thread: it traces batch after batch.
+pub struct Tracer<C: Colour> {
+    paths: CameraPaths<C>,
+    segments: Segments<C>,
+    vertices: Vertices<C>,
+    shadow: ShadowRays<C>,
+    particles: Particles,
+    offspring: Offspring,
+    statistics: TraceStatistics,
+}
+
+impl<C: Colour> Default for Tracer<C> {
+    fn default() -> Self {
+        Self {
+            paths: CameraPaths::new(),
+            segments: Segments::new(),
+            vertices: Vertices::new(),
+            shadow: ShadowRays::new(),
+            particles: Particles::default(),
+            offspring: Offspring::default(),
+            statistics: TraceStatistics::default(),
+        }
+    }
+}
+
+impl<C: Colour> Tracer<C> {
+    /// Traces a batch and adds its samples to the pixels of `tile`. The result depends on nothing but the engine, the
+    /// job and the tile.
+    pub fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
+        let start = Instant::now();
+        let mut random = RandomStream::new(job.key);
+        camera::start(engine, job, tile, &mut random, &mut self.paths, &mut self.segments);
+        self.follow(engine, job, &mut random);
+        self.expose(engine, job, tile);
+        self.statistics.camera_paths += self.paths.radiance.len() as u64;
+        self.statistics.total_time += start.elapsed();
+    }
+
+    /// What was counted since the last call.
+    pub fn take_statistics(&mut self) -> TraceStatistics {
+        std::mem::take(&mut self.statistics)
+    }
+
+    /// Moves the batch from vertex to vertex until no particle is left.
+    fn follow(&mut self, engine: &Engine, job: &TileJob, random: &mut RandomStream) {
+        let max_depth = engine.settings.max_depth.unwrap_or(u32::MAX);
+        let next_event = engine.settings.direct_light == DirectLight::NextEvent
+            && !engine.scene.emitters.is_empty();
+        for depth in 0..max_depth {
+            if self.segments.len() == 0 {
+                return;
+            }
+            if depth == MAX_BOUNCES {
+                self.statistics.dropped.endless += 1;
+                return;
+            }
+            let camera_rays = depth == 0;
+            let coherence = if camera_rays { Coherence::Coherent } else { Coherence::Incoherent };
+            intersect::nearest(&engine.accelerator, coherence, &mut self.segments, &mut self.statistics);
+            if camera_rays && engine.settings.hide_emitters {
+                hidden_emitters::look_through(engine, &mut self.segments, &mut self.statistics);
+            }
+            let scatters = depth + 1 < max_depth;
+            emission::arrive(
+                engine,
+                &mut self.paths,
+                &self.segments,
+                &mut self.vertices,
+                camera_rays,
+                scatters,
+            );
+            self.statistics.vertices += self.vertices.len() as u64;
+            self.statistics.deepest = self.statistics.deepest.max(depth + 1);
+            if next_event {
+                direct::sample_lights(engine, &self.paths, &self.vertices, random, &mut self.shadow);
+                intersect::occluded(&engine.accelerator, &mut self.shadow, &mut self.statistics);
+                direct::add_unoccluded(&self.shadow, &mut self.paths);
+            }
+            self.statistics.walk += walk_stage::decide(
+                engine.strategy(),
+                &self.vertices,
+                job.samples,
+                depth,
+                &mut self.particles,
+                random,
+                &mut self.offspring,
+            );
+            scatter::scatter(&self.vertices, self.offspring.children(), random, &mut self.segments);
+        }
+    }
+
+    /// Adds the finished camera paths to their pixels.
+    fn expose(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
+        let samples = job.samples as usize;
+        // Paths of one population are not independent of each other: together they are one unit.
+        let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile);
+        for (index, pixel) in tile.pixels.iter_mut().enumerate() {
+            let mut sum = [0.0; 3];
+            for path in index * samples..(index + 1) * samples {
+                let rgb = self.sample(path);
+                if joint {
+                    for (sum, value) in sum.iter_mut().zip(rgb) {
+                        *sum += value;
+                    }
+                } else {
+                    pixel.add_unit(1, rgb);
+                }
+            }
+            if joint {
+                pixel.add_unit(job.samples, sum);
+            }
+        }
+    }
+
+    /// The colour of a finished camera path; black, and counted, where it is no radiance.
+    fn sample(&mut self, path: usize) -> [f64; 3] {
+        let radiance = self.paths.radiance[path];
+        let dropped = &mut self.statistics.dropped;
+        let components = radiance.components();
+        if components.iter().any(|value| value.is_nan()) {
+            dropped.nan += 1;
+        } else if !radiance.is_finite() {
+            dropped.infinite += 1;
+        } else if components.iter().any(|&value| value < 0.0) {
+            dropped.negative += 1;
+        } else {
+            let weight = f64::from(self.paths.filter_weight[path]);
+            return C::to_rgb(radiance, &self.paths.wavelengths[path]).map(|v| f64::from(v) * weight);
+        }
+        [0.0; 3]
+    }
+}

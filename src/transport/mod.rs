@@ -1,0 +1,31 @@
+//! The engine: batches of path states, and the stages that move them one bounce on.
+//!
+//! ```text
+//!  camera -> intersect -> arrive -> direct light -> walk -> scatter -+
+//!               ^          (emission)                                |
+//!               +----------------------------------------------------+
+//! ```
+//!
+//! A batch holds all camera paths of one tile in one pass. Path states are structures of arrays: [`Segments`] are rays
+//! on their way, [`Vertices`] the surface points that they reached. Every stage is one file and one loop. Children of
+//! one parent stand side by side from the strategy's decision on; so they share hit point, material and direct light,
+//! and their rays are neighbours in the stream.
+
+mod accelerator;
+mod batch;
+mod camera;
+mod direct;
+mod emission;
+mod engine;
+mod hidden_emitters;
+mod intersect;
+mod offset;
+mod scatter;
+mod settings;
+mod statistics;
+mod walk_stage;
+
+pub use accelerator::{Accelerator, AcceleratorOptions};
+pub use engine::{Engine, TileJob, Tracer};
+pub use settings::{DirectLight, TransportSettings};
+pub use statistics::TraceStatistics;

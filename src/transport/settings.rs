@@ -1,0 +1,25 @@
+//! What the engine can be told.
+
+use serde::Serialize;
+
+/// Whether direct light is also sought by sampling the emitters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DirectLight {
+    /// Next-event estimation at every vertex, combined with hits of emitters by multiple importance sampling.
+    #[default]
+    NextEvent,
+    /// The pure form: light counts when a path hits an emitter.
+    Off,
+}
+
+/// How light is transported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TransportSettings {
+    /// Most segments of a path, camera ray included; `None` for no limit.
+    pub max_depth: Option<u32>,
+    /// How direct light is found.
+    pub direct_light: DirectLight,
+    /// Whether emitters are invisible to the camera.
+    pub hide_emitters: bool,
+}

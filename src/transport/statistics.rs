@@ -1,0 +1,85 @@
+//! What the engine counts while it works.
+
+use std::ops::AddAssign;
+use std::time::Duration;
+
+use crate::walk::WalkReport;
+
+/// Counts of one or more batches.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TraceStatistics {
+    /// Camera paths.
+    pub camera_paths: u64,
+    /// Rays that looked for the nearest surface.
+    pub rays: u64,
+    /// Rays that only asked whether something is in the way.
+    pub shadow_rays: u64,
+    /// Surface points at which a strategy decided.
+    pub vertices: u64,
+    /// Time inside calls of the intersection layer, summed over threads.
+    pub intersection_time: Duration,
+    /// Time inside the engine, summed over threads.
+    pub total_time: Duration,
+    /// Samples that were dropped, and why.
+    pub dropped: DroppedSamples,
+    /// What the strategy found wrong with the numbers it was given.
+    pub walk: WalkReport,
+    /// The longest path met, in segments.
+    pub deepest: u32,
+}
+
+/// Samples that were not numbers the image may hold; they count as black.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DroppedSamples {
+    /// Not a number.
+    pub nan: u64,
+    /// Infinite.
+    pub infinite: u64,
+    /// Negative radiance.
+    pub negative: u64,
+    /// Batches cut off at the bounce limit that protects against scenes in which light never dies.
+    pub endless: u64,
+}
+
+impl TraceStatistics {
+    /// All rays.
+    pub fn all_rays(&self) -> u64 {
+        self.rays + self.shadow_rays
+    }
+
+    /// The share of the engine's time that was spent inside the intersection layer, in [0, 1].
+    pub fn intersection_share(&self) -> f64 {
+        let total = self.total_time.as_secs_f64();
+        if total > 0.0 { self.intersection_time.as_secs_f64() / total } else { 0.0 }
+    }
+}
+
+impl DroppedSamples {
+    /// All causes together.
+    pub fn total(&self) -> u64 {
+        self.nan + self.infinite + self.negative + self.endless
+    }
+}
+
+impl AddAssign for DroppedSamples {
+    fn add_assign(&mut self, other: Self) {
+        self.nan += other.nan;
+        self.infinite += other.infinite;
+        self.negative += other.negative;
+        self.endless += other.endless;
+    }
+}
+
+impl AddAssign for TraceStatistics {
+    fn add_assign(&mut self, other: Self) {
+        self.camera_paths += other.camera_paths;
+        self.rays += other.rays;
+        self.shadow_rays += other.shadow_rays;
+        self.vertices += other.vertices;
+        self.intersection_time += other.intersection_time;
+        self.total_time += other.total_time;
+        self.dropped += other.dropped;
+        self.walk += other.walk;
+        self.deepest = self.deepest.max(other.deepest);
+    }
+}

@@ -1,0 +1,42 @@
+//! Stage: the strategy decides how many children every vertex gets.
+
+use super::batch::{Particles, Vertices};
+use crate::sampling::RandomStream;
+use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::walk::{Offspring, Population, Scalar, Scope, Strategy, WalkReport};
+
+/// Shows the vertices to the strategy as a population and lets it fill `offspring`.
+///
+/// `samples` is the number of camera paths of each pixel, `depth` the number of scattering events before these vertices.
+pub(super) fn decide<C: Colour>(
+    strategy: &dyn Strategy,
+    vertices: &Vertices<C>,
+    samples: u32,
+    depth: u32,
+    particles: &mut Particles,
+    random: &mut RandomStream,
+    offspring: &mut Offspring,
+) -> WalkReport {
+    let scalar = |spectrum: C::Spectrum| match strategy.scalar() {
+        Scalar::Mean => spectrum.mean(),
+        Scalar::Maximum => spectrum.max_component(),
+    };
+    particles.clear();
+    particles.importance.extend(vertices.throughput.iter().map(|&throughput| scalar(throughput)));
+    particles.albedo.extend(vertices.bsdf.iter().map(|bsdf| scalar(bsdf.albedo())));
+    particles.shininess.extend(vertices.bsdf.iter().map(|bsdf| bsdf.shininess()));
+    let group_of = |path: u32| match strategy.scope() {
+        Scope::Particle | Scope::CameraPath => path,
+        Scope::Pixel => path / samples,
+        Scope::Tile => 0,
+    };
+    particles.group.extend(vertices.path.iter().map(|&path| group_of(path)));
+    let population = Population {
+        importance: &particles.importance,
+        albedo: &particles.albedo,
+        shininess: &particles.shininess,
+        group: &particles.group,
+        depth,
+    };
+    strategy.resample(&population, random, offspring)
+}
