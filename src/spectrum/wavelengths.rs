@@ -43,6 +43,12 @@ impl<const N: usize> Wavelengths<N> {
         drawn
     }
 
+    /// Chosen wavelengths, in nm, with densities of 1 per nm.
+    #[cfg(test)]
+    pub(super) fn at(nm: [f32; N]) -> Self {
+        Self { nm, pdf: [1.0; N] }
+    }
+
     /// The wavelengths, in nm; the hero first.
     #[inline]
     pub fn nm(&self) -> &[f32; N] {
