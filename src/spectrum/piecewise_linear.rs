@@ -101,14 +101,13 @@ impl RegularTable {
     /// The value at `nm`.
     #[inline]
     pub(super) fn at(&self, nm: f32) -> f32 {
-        if !(self.first_nm..=self.last_nm).contains(&nm) {
-            return 0.0;
-        }
-        let position = (nm - self.first_nm) * self.entries_per_nm;
-        let entry = (position as usize).min(self.values.len() - 2);
+        // Without a jump: random wavelengths leave the range too unpredictably for one.
+        let last = self.values.len() - 1;
+        let position = ((nm - self.first_nm) * self.entries_per_nm).clamp(0.0, last as f32);
+        let entry = (position as usize).min(last - 1);
         let (before, after) = (self.values[entry], self.values[entry + 1]);
-        // Rounding can carry the last position a little beyond the last entry.
-        before + (position - entry as f32).min(1.0) * (after - before)
+        let inside = f32::from(u8::from(nm >= self.first_nm && nm <= self.last_nm));
+        inside * (before + (position - entry as f32) * (after - before))
     }
 }
 

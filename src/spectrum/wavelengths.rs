@@ -143,6 +143,15 @@ mod tests {
     }
 
     #[test]
+    fn the_others_are_rotations_of_the_hero() {
+        let drawn = Wavelengths::<4>::sample(0.6);
+        for (i, quantile) in [0.6, 0.85, 0.1, 0.35].into_iter().enumerate() {
+            let (nm, pdf) = sample_visible(quantile);
+            assert!((drawn.nm()[i] - nm).abs() < 1e-3 && (drawn.pdf()[i] / pdf - 1.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
     fn mitsuba_draws_the_same_wavelengths() {
         // mi.sample_rgb_spectrum(0.25): wavelength, reciprocal density.
         let (nm, pdf) = sample_visible(0.25);
