@@ -82,3 +82,87 @@ impl<const N: usize> Colour for Spectral<N> {
         rgb
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The colour of a radiance as the mean over the paths with evenly spread random numbers.
+    fn mean_colour<const N: usize>(radiance: impl Fn(&Wavelengths<N>) -> Spectrum<N>) -> [f32; 3] {
+        let paths = 20_000;
+        let mut sum = [0.0f64; 3];
+        for path in 0..paths {
+            let wavelengths = Spectral::<N>::sample_wavelengths((path as f32 + 0.5) / paths as f32);
+            for (sum, channel) in sum
+                .iter_mut()
+                .zip(Spectral::to_rgb(radiance(&wavelengths), &wavelengths))
+            {
+                *sum += f64::from(channel);
+            }
+        }
+        sum.map(|channel| (channel / f64::from(paths)) as f32)
+    }
+
+    #[track_caller]
+    fn assert_close(a: [f32; 3], b: [f32; 3], tolerance: f32) {
+        assert!(
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() < tolerance),
+            "{a:?} instead of {b:?}"
+        );
+    }
+
+    #[test]
+    fn daylight_is_white_and_equal_energy_is_illuminant_e() {
+        let white = SpectralCurve::rgb_emission([1.0; 3]).unwrap();
+        assert_close(mean_colour::<1>(|w| white.evaluate(w)), [1.0; 3], 3e-4);
+        assert_close(mean_colour::<4>(|w| white.evaluate(w)), [1.0; 3], 3e-4);
+        assert_close(mean_colour::<8>(|w| white.evaluate(w)), [1.0; 3], 3e-4);
+        // The exact integral is 0.1 % above the sum over 1000 points that normalises it.
+        let equal_energy = [1.204_795, 0.948_292, 0.908_916].map(|channel| 1.001 * channel);
+        assert_close(mean_colour::<4>(|_| Spectrum::ONE), equal_energy, 1e-3);
+    }
+
+    #[test]
+    fn a_lit_colour_comes_back_through_the_wavelengths() {
+        let white = SpectralCurve::rgb_emission([1.0; 3]).unwrap();
+        for rgb in [
+            [0.63, 0.065, 0.05],
+            [0.14, 0.45, 0.091],
+            [1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.02],
+            [0.9, 1.0, 0.0],
+        ] {
+            let surface = SpectralCurve::rgb_reflectance(rgb).unwrap();
+            assert_close(
+                mean_colour::<4>(|w| white.evaluate(w) * surface.evaluate(w)),
+                rgb,
+                1e-3,
+            );
+        }
+        for rgb in [[17.0, 12.0, 4.0], [0.0, 3.0, 9.0]] {
+            let lamp = SpectralCurve::rgb_emission(rgb).unwrap();
+            assert_close(mean_colour::<4>(|w| lamp.evaluate(w)), rgb, 5e-3);
+        }
+    }
+
+    #[test]
+    fn both_ways_see_the_same_measured_lamp() {
+        let entries = [(400.0, 0.0), (500.0, 8.0), (600.0, 15.6), (700.0, 18.4)];
+        let lamp = SpectralCurve::tabulated_emission(&entries).unwrap();
+        let rgb = Rgb::to_rgb(Rgb::evaluate(&lamp, &()), &());
+        assert_close(rgb, lamp.rgb(), 1e-9);
+        assert_close(
+            mean_colour::<4>(|w| Spectral::evaluate(&lamp, w)),
+            rgb.map(|c| 1.001 * c),
+            5e-3,
+        );
+    }
+
+    #[test]
+    fn one_path_has_mitsubas_colour() {
+        // mi.spectrum_to_srgb([1, 2, 3, 4], [450, 520, 555, 601]); the density of `at` is 1.
+        let wavelengths = Wavelengths::at([450.0, 520.0, 555.0, 601.0]);
+        let rgb = Spectral::to_rgb(Spectrum([1.0, 2.0, 3.0, 4.0]), &wavelengths);
+        assert_close(rgb, [0.020_087_6, 0.016_487_2, 0.002_326_41], 1e-6);
+    }
+}

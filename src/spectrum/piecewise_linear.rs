@@ -16,6 +16,8 @@ pub(super) enum PiecewiseLinear {
 pub(super) struct RegularTable {
     /// Wavelength of the first value, in nm.
     first_nm: f32,
+    /// Wavelength of the last value, in nm.
+    last_nm: f32,
     /// Entries per nm.
     entries_per_nm: f32,
     /// At least two values.
@@ -70,6 +72,7 @@ impl PiecewiseLinear {
         Ok(match regular_step(&nm) {
             Some(step) => Self::Regular(RegularTable {
                 first_nm: nm[0],
+                last_nm: nm[nm.len() - 1],
                 entries_per_nm: (1.0 / step) as f32,
                 values,
             }),
@@ -98,14 +101,13 @@ impl RegularTable {
     /// The value at `nm`.
     #[inline]
     pub(super) fn at(&self, nm: f32) -> f32 {
+        // Without a jump: random wavelengths leave the range too unpredictably for one.
         let last = self.values.len() - 1;
-        let position = (nm - self.first_nm) * self.entries_per_nm;
-        if !(0.0..=last as f32).contains(&position) {
-            return 0.0;
-        }
+        let position = ((nm - self.first_nm) * self.entries_per_nm).clamp(0.0, last as f32);
         let entry = (position as usize).min(last - 1);
         let (before, after) = (self.values[entry], self.values[entry + 1]);
-        before + (position - entry as f32) * (after - before)
+        let inside = f32::from(u8::from(nm >= self.first_nm && nm <= self.last_nm));
+        inside * (before + (position - entry as f32) * (after - before))
     }
 }
 
@@ -178,6 +180,23 @@ mod tests {
             table(&entries).unwrap(),
             PiecewiseLinear::Regular(_)
         ));
+    }
+
+    #[test]
+    fn every_entry_is_met_whatever_the_rounding() {
+        for count in 2..200u16 {
+            let nm = |i: u16| 360.0 + f32::from(i) * (470.0 / f32::from(count - 1));
+            let entries: Vec<_> = (0..count)
+                .map(|i| (nm(i), 1.0 + f32::from(i % 3)))
+                .collect();
+            let table = table(&entries).unwrap();
+            assert!(
+                entries
+                    .iter()
+                    .all(|&(nm, value)| (table.at(nm) - value).abs() < 1e-3),
+                "{count}"
+            );
+        }
     }
 
     #[test]

@@ -184,6 +184,18 @@ mod tests {
     }
 
     #[test]
+    fn dark_colours_keep_their_hue() {
+        for rgb in [[1e-3, 3e-4, 2e-4], [2e-4, 1e-3, 5e-4], [1e-4, 2e-4, 1e-3]] {
+            for (channel, back) in rgb.into_iter().zip(colour(&SigmoidPolynomial::fit(rgb))) {
+                assert!(
+                    (back / f64::from(channel) - 1.0).abs() < 5e-3,
+                    "{rgb:?}: {back} for {channel}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn greys_are_constant() {
         for grey in [0.0, 1e-4, 0.18, 0.5, 0.9, 1.0] {
             let reflectance = SigmoidPolynomial::fit([grey; 3]);

@@ -43,6 +43,12 @@ impl<const N: usize> Wavelengths<N> {
         drawn
     }
 
+    /// Chosen wavelengths, in nm, with densities of 1 per nm.
+    #[cfg(test)]
+    pub(super) fn at(nm: [f32; N]) -> Self {
+        Self { nm, pdf: [1.0; N] }
+    }
+
     /// The wavelengths, in nm; the hero first.
     #[inline]
     pub fn nm(&self) -> &[f32; N] {
@@ -133,6 +139,15 @@ mod tests {
                 .sum();
             let p = ChiSquared::new((BINS - 1) as f64).unwrap().sf(statistic);
             assert!(p > 0.001, "chi-square {statistic}, p = {p}");
+        }
+    }
+
+    #[test]
+    fn the_others_are_rotations_of_the_hero() {
+        let drawn = Wavelengths::<4>::sample(0.6);
+        for (i, quantile) in [0.6, 0.85, 0.1, 0.35].into_iter().enumerate() {
+            let (nm, pdf) = sample_visible(quantile);
+            assert!((drawn.nm()[i] - nm).abs() < 1e-3 && (drawn.pdf()[i] / pdf - 1.0).abs() < 1e-5);
         }
     }
 
