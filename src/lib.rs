@@ -4,3 +4,4 @@
 
 pub mod sampling;
 pub mod scene;
+pub mod walk;
