@@ -2,6 +2,11 @@
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod embree;
+pub mod film;
+pub mod render;
 pub mod sampling;
 pub mod scene;
 pub mod spectrum;
+pub mod transport;
+pub mod walk;

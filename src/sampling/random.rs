@@ -24,6 +24,12 @@ impl RandomStream {
         Self(Mt::new_with_key(words))
     }
 
+    /// A uniform 32-bit integer.
+    #[inline]
+    pub fn bits(&mut self) -> u32 {
+        self.0.next_u32()
+    }
+
     /// A uniform number in [0, 1) with 24 random bits, so that every value is exact in `f32`.
     #[inline]
     pub fn uniform(&mut self) -> f32 {
@@ -42,5 +48,62 @@ impl RandomStream {
     #[inline]
     pub fn uniform_2d(&mut self) -> [f32; 2] {
         [self.uniform(), self.uniform()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stream(seed: u64, tile: u32, pass: u32) -> RandomStream {
+        RandomStream::new(StreamKey { seed, tile, pass })
+    }
+
+    /// The first numbers of Matsumoto and Nishimura's `mt19937ar.out`, for the key {0x123, 0x234, 0x345, 0x456}.
+    #[test]
+    fn is_the_mersenne_twister_of_its_authors() {
+        let mut random = stream(0x0000_0234_0000_0123, 0x345, 0x456);
+        let drawn = [(); 5].map(|()| random.bits());
+        assert_eq!(
+            drawn,
+            [1067595299, 955945823, 477289528, 4107218783, 4228976476]
+        );
+    }
+
+    #[test]
+    fn every_part_of_the_key_counts() {
+        let first = |mut random: RandomStream| [random.bits(), random.bits()];
+        let reference = first(stream(1, 2, 3));
+        assert_eq!(reference, first(stream(1, 2, 3)));
+        for other in [
+            stream(2, 2, 3),
+            stream(1 + (1 << 32), 2, 3),
+            stream(1, 3, 3),
+            stream(1, 2, 4),
+        ] {
+            assert_ne!(reference, first(other));
+        }
+    }
+
+    /// Both kinds of uniform numbers stay in [0, 1) and fill it evenly: chi-square over 64 cells.
+    #[test]
+    fn uniform_numbers_are_uniform() {
+        const CELLS: usize = 64;
+        const DRAWS: usize = 1 << 18;
+        let mut random = stream(7, 0, 0);
+        let mut cells = [[0_u32; CELLS]; 2];
+        for _ in 0..DRAWS {
+            cells[0][(random.uniform() * CELLS as f32) as usize] += 1;
+            cells[1][(random.uniform_f64() * CELLS as f64) as usize] += 1;
+        }
+        let expected = (DRAWS / CELLS) as f64;
+        for cells in cells {
+            let chi_square: f64 = cells
+                .iter()
+                .map(|&n| (f64::from(n) - expected).powi(2) / expected)
+                .sum();
+            // 63 degrees of freedom: the 0.01 % and 99.99 % quantiles.
+            assert!((27.0..114.0).contains(&chi_square), "{chi_square}");
+        }
     }
 }

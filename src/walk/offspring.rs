@@ -1,0 +1,80 @@
+//! The children that a strategy has given to a population.
+
+use super::{ExpectedCount, Population, Rounding, WalkReport};
+use crate::sampling::RandomStream;
+
+/// One particle of the next generation, at the vertex of its parent and about to choose its direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Child {
+    /// The parent's index in the population.
+    pub parent: u32,
+    /// What the parent's throughput is multiplied by: 1 / nu of the parent, always finite.
+    pub weight: f32,
+}
+
+/// The children of a population, in the order of their parents, so that siblings stand side by side.
+///
+/// Reused from one call to the next, it allocates nothing once it has grown to the size of the batches.
+#[derive(Debug, Default)]
+pub struct Offspring {
+    children: Vec<Child>,
+    /// What the strategy wishes for each particle.
+    wishes: Vec<f32>,
+    /// nu of each particle.
+    expected: Vec<ExpectedCount>,
+}
+
+impl Offspring {
+    /// No children yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The children of the population last resampled.
+    pub fn children(&self) -> &[Child] {
+        &self.children
+    }
+
+    /// nu of each particle of the population last resampled: the mean of its number of children.
+    pub fn expected_counts(&self) -> &[ExpectedCount] {
+        &self.expected
+    }
+
+    /// Room for one wish per particle of a population, with unspecified contents.
+    pub(super) fn wishes_mut(&mut self, particles: usize) -> &mut [f32] {
+        self.wishes.resize(particles, 0.0);
+        &mut self.wishes
+    }
+
+    /// Turns the wishes into expected counts that keep the estimator unbiased whatever was wished:
+    /// zero exactly for the particles that do not matter, and for those with impossible numbers, which are reported.
+    pub(super) fn settle(&mut self, population: &Population) -> WalkReport {
+        let mut all_sound = true;
+        self.expected.clear();
+        self.expected.extend(
+            population
+                .particles()
+                .zip(&self.wishes)
+                .map(|(particle, &wish)| {
+                    let sound = particle.is_sound();
+                    all_sound &= sound;
+                    if sound && particle.matters() {
+                        ExpectedCount::positive(wish)
+                    } else {
+                        ExpectedCount::ZERO
+                    }
+                }),
+        );
+        if all_sound {
+            WalkReport::default()
+        } else {
+            WalkReport::on(population)
+        }
+    }
+
+    /// Draws the children from the expected counts, jointly within each group where `rounding` is joint.
+    pub(super) fn draw(&mut self, rounding: Rounding, group: &[u32], random: &mut RandomStream) {
+        self.children.clear();
+        rounding.draw(&self.expected, group, random, &mut self.children);
+    }
+}
