@@ -2,12 +2,17 @@
 
 mod bsdfs;
 mod emitters;
+mod error;
+mod load;
 pub mod mesh;
 mod sensors;
 mod shapes;
+pub mod xml;
 
 pub use bsdfs::{Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Model, Side};
 pub use emitters::{AreaLight, ConstantLight, Emitter, LightSample, PointLight};
+pub use error::{Location, SceneError};
+pub use load::LoadOptions;
 pub use sensors::{
     CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis, ImageSize, Perspective,
     PixelFormat, Projection, ReconstructionFilter,

@@ -1,5 +1,9 @@
 //! Triangle meshes as files hold them and as generators make them.
 
+mod error;
+
+pub use error::{MeshError, MeshProblem};
+
 /// A triangle mesh in its own space.
 ///
 /// Invariants (kept by every reader and generator): at least one triangle, every index below
