@@ -7,6 +7,7 @@ mod load;
 pub mod mesh;
 mod sensors;
 mod shapes;
+mod spectra;
 pub mod xml;
 
 pub use bsdfs::{Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Model, Side};

@@ -10,7 +10,12 @@ use glam::Vec3;
 
 use super::{BsdfSample, BsdfValue};
 use crate::sampling::{SolidAnglePdf, warp};
+use crate::scene::error::SceneError;
+use crate::scene::spectra::{Quantity, spectrum_or};
+use crate::scene::xml::Object;
 use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
+
+const DEFAULT_REFLECTANCE: f32 = 0.5;
 
 /// A diffuse surface as the scene states it.
 #[derive(Clone, Debug)]
@@ -19,7 +24,21 @@ pub struct DiffuseMaterial {
     pub reflectance: SpectralCurve,
 }
 
+impl Default for DiffuseMaterial {
+    fn default() -> Self {
+        let reflectance = SpectralCurve::constant_reflectance(DEFAULT_REFLECTANCE);
+        Self { reflectance: reflectance.unwrap_or(SpectralCurve::BLACK) }
+    }
+}
+
 impl DiffuseMaterial {
+    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
+        let reflectance =
+            spectrum_or(object, "reflectance", Quantity::Reflectance, DEFAULT_REFLECTANCE)?;
+        object.finish()?;
+        Ok(Self { reflectance })
+    }
+
     #[inline]
     pub(super) fn at<C: Colour>(&self, wavelengths: &C::Wavelengths) -> Diffuse<C::Spectrum> {
         Diffuse { reflectance: C::evaluate(&self.reflectance, wavelengths) }

@@ -7,11 +7,14 @@
 //! point away from the surface. `outgoing` goes to where the path comes from, `incident` to where it goes on.
 
 mod diffuse;
+mod twosided;
 
 pub use diffuse::{Diffuse, DiffuseMaterial};
 
 use glam::Vec3;
 
+use super::error::SceneError;
+use super::xml::Object;
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -25,6 +28,29 @@ pub struct Material {
     pub front: Model,
     /// The other side; black where there is none.
     pub back: Option<Model>,
+}
+
+impl Default for Material {
+    /// What a shape without a bsdf is made of.
+    fn default() -> Self {
+        Self { front: Model::Diffuse(DiffuseMaterial::default()), back: None }
+    }
+}
+
+/// The bsdf of a scene file.
+pub(super) fn load(object: &Object) -> Result<Material, SceneError> {
+    match object.plugin.as_str() {
+        "twosided" => twosided::load(object),
+        _ => Ok(Material { front: load_model(object)?, back: None }),
+    }
+}
+
+/// The bsdf of a scene file, for one side.
+fn load_model(object: &Object) -> Result<Model, SceneError> {
+    match object.plugin.as_str() {
+        "diffuse" => DiffuseMaterial::load(object).map(Model::Diffuse),
+        _ => Err(object.unsupported(&["diffuse", "twosided"])),
+    }
 }
 
 /// The scattering model of one side.

@@ -7,6 +7,9 @@
 use glam::Vec3;
 
 use super::LightSample;
+use crate::scene::error::SceneError;
+use crate::scene::spectra::{Quantity, spectrum};
+use crate::scene::xml::Object;
 use crate::scene::shapes::SurfacePoint;
 use crate::scene::{Shape, ShapeId};
 use crate::sampling::SolidAnglePdf;
@@ -22,6 +25,13 @@ pub struct AreaLight {
 }
 
 impl AreaLight {
+    pub(super) fn load(object: &Object, shape: ShapeId) -> Result<Self, SceneError> {
+        let radiance = spectrum(object, "radiance", Quantity::Emission)?
+            .ok_or_else(|| object.missing("radiance"))?;
+        object.finish()?;
+        Ok(Self { shape, radiance })
+    }
+
     /// The radiance that leaves `point` of the shape in `direction` (unit, world space, away from the surface).
     #[inline]
     pub fn radiance<C: Colour>(

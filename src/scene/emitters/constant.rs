@@ -5,6 +5,9 @@
 //! | `radiance` | spectrum | incident radiance in W/(m^2 sr nm), or in linear sRGB | 1 |
 
 use super::LightSample;
+use crate::scene::error::SceneError;
+use crate::scene::spectra::{Quantity, spectrum_or};
+use crate::scene::xml::Object;
 use crate::sampling::{SolidAnglePdf, warp};
 use crate::spectrum::{Colour, SpectralCurve};
 
@@ -16,6 +19,12 @@ pub struct ConstantLight {
 }
 
 impl ConstantLight {
+    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
+        let radiance = spectrum_or(object, "radiance", Quantity::Emission, 1.0)?;
+        object.finish()?;
+        Ok(Self { radiance })
+    }
+
     /// The radiance that arrives from any direction.
     #[inline]
     pub fn radiance<C: Colour>(&self, wavelengths: &C::Wavelengths) -> C::Spectrum {

@@ -10,9 +10,33 @@ pub use point::PointLight;
 
 use glam::Vec3;
 
-use super::Shape;
+use super::error::SceneError;
+use super::xml::Object;
+use super::{Shape, ShapeId};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::Colour;
+
+/// An emitter of a scene file that stands on its own.
+pub(super) fn load(object: &Object) -> Result<Emitter, SceneError> {
+    match object.plugin.as_str() {
+        "point" => PointLight::load(object).map(Emitter::Point),
+        "constant" => ConstantLight::load(object).map(Emitter::Constant),
+        _ => Err(object.unsupported(&SUPPORTED)),
+    }
+}
+
+/// The emitter of a scene file that stands in a shape.
+pub(super) fn load_area(object: &Object, shape: ShapeId) -> Result<AreaLight, SceneError> {
+    match object.plugin.as_str() {
+        "area" => AreaLight::load(object, shape),
+        name if SUPPORTED.contains(&name) => {
+            Err(object.error(format!("`{name}` cannot stand in a shape; only `area` can")))
+        }
+        _ => Err(object.unsupported(&SUPPORTED)),
+    }
+}
+
+const SUPPORTED: [&str; 3] = ["area", "point", "constant"];
 
 /// A source of light.
 #[derive(Clone, Debug)]

@@ -6,9 +6,12 @@
 //! | `position` | point | where it stands | 0, 0, 0 |
 //! | `to_world` | transform | moves the position; may not be given beside it | identity |
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::LightSample;
+use crate::scene::error::SceneError;
+use crate::scene::spectra::{Quantity, spectrum_or};
+use crate::scene::xml::Object;
 use crate::spectrum::{Colour, SpectralCurve};
 
 /// A point light.
@@ -21,6 +24,21 @@ pub struct PointLight {
 }
 
 impl PointLight {
+    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
+        let intensity = spectrum_or(object, "intensity", Quantity::Emission, 1.0)?;
+        let position = match (object.vector("position")?, object.transform("to_world")?) {
+            (Some(_), Some(_)) => {
+                let message = "`position` and `to_world` cannot both be given";
+                return Err(object.parameter_error("to_world", message));
+            }
+            (Some(position), None) => position,
+            (None, Some(to_world)) => to_world.transform_point3(DVec3::ZERO),
+            (None, None) => DVec3::ZERO,
+        };
+        object.finish()?;
+        Ok(Self { position: position.as_vec3(), intensity })
+    }
+
     #[inline]
     pub(super) fn sample<C: Colour>(
         &self,

@@ -13,6 +13,9 @@
 
 use thiserror::Error;
 
+use crate::scene::error::SceneError;
+use crate::scene::xml::{Class, Object};
+
 /// Size of an image in pixels; both sides are positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageSize {
@@ -90,7 +93,53 @@ pub struct FilmDescription {
     pub half_precision: bool,
 }
 
+impl Default for FilmDescription {
+    /// The film of a sensor that states none.
+    fn default() -> Self {
+        let size = ImageSize { width: 768, height: 576 };
+        Self {
+            size,
+            crop: CropWindow { x: 0, y: 0, size },
+            filter: ReconstructionFilter::Gaussian { stddev: 0.5 },
+            sample_border: false,
+            pixel_format: PixelFormat::Rgb,
+            half_precision: false,
+        }
+    }
+}
+
 impl FilmDescription {
+    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
+        if object.plugin != "hdrfilm" {
+            return Err(object.unsupported(&["hdrfilm"]));
+        }
+        let refuse = |error: FilmError| object.error(error.to_string());
+        let size = (object.integer_or("width", 768)?, object.integer_or("height", 576)?);
+        let offset = (object.integer_or("crop_offset_x", 0)?, object.integer_or("crop_offset_y", 0)?);
+        let crop = (object.integer("crop_width")?, object.integer("crop_height")?);
+        let mut film = Self::new(size.0, size.1).map_err(refuse)?;
+        let crop = (crop.0.unwrap_or(size.0 - offset.0), crop.1.unwrap_or(size.1 - offset.1));
+        film = film.cropped(offset, crop).map_err(refuse)?;
+        film.filter = match object.child(Class::ReconstructionFilter)? {
+            Some(child) => ReconstructionFilter::load(&child.object)?,
+            None => Self::default().filter,
+        };
+        film.sample_border = object.boolean_or("sample_border", false)?;
+        film.pixel_format = match choice(object, "pixel_format", &["rgb", "luminance"])? {
+            "luminance" => PixelFormat::Luminance,
+            _ => PixelFormat::Rgb,
+        };
+        film.half_precision = choice(object, "component_format", &["float32", "float16"])? == "float16";
+        choice(object, "file_format", &["openexr", "exr"])?;
+        object.finish()?;
+        Ok(film)
+    }
+
+    /// The same film in another size, uncropped.
+    pub fn resized(&self, width: i64, height: i64) -> Result<Self, FilmError> {
+        let sized = Self::new(width, height)?;
+        Ok(Self { size: sized.size, crop: sized.crop, ..self.clone() })
+    }
     /// An uncropped film of this size with the box filter.
     pub fn new(width: i64, height: i64) -> Result<Self, FilmError> {
         let side = |n: i64| u32::try_from(n).ok().filter(|n| (1..=ImageSize::MAX_SIDE).contains(n));
@@ -150,7 +199,40 @@ pub enum ReconstructionFilter {
     },
 }
 
+/// The value of a string parameter that must be one of `choices`, the first of which is the default.
+fn choice(object: &Object, name: &'static str, choices: &[&'static str]) -> Result<&'static str, SceneError> {
+    let given = object.string_or(name, choices[0])?;
+    choices.iter().find(|choice| choice.eq_ignore_ascii_case(given)).copied().ok_or_else(|| {
+        let message = format!("`{name}` is `{given}`; it must be one of {}", choices.join(", "));
+        object.parameter_error(name, message)
+    })
+}
+
 impl ReconstructionFilter {
+    fn load(object: &Object) -> Result<Self, SceneError> {
+        let positive = |name, default| -> Result<f32, SceneError> {
+            let value = object.float_or(name, default)? as f32;
+            // A filter wider than this is a mistake, and its tables would be large.
+            let range = 0.0..=64.0;
+            if value > 0.0 && range.contains(&value) {
+                return Ok(value);
+            }
+            Err(object.parameter_error(name, format!("`{name}` is {value}; it must be above 0 and at most 64")))
+        };
+        let filter = match object.plugin.as_str() {
+            "box" => Self::Box,
+            "tent" => Self::Tent { radius: positive("radius", 1.0)? },
+            "gaussian" => Self::Gaussian { stddev: positive("stddev", 0.5)? },
+            "mitchell" => Self::Mitchell {
+                b: object.float_or("B", 1.0 / 3.0)? as f32,
+                c: object.float_or("C", 1.0 / 3.0)? as f32,
+            },
+            _ => return Err(object.unsupported(&["box", "tent", "gaussian", "mitchell"])),
+        };
+        object.finish()?;
+        Ok(filter)
+    }
+
     /// How far from its centre the filter reaches, in pixels.
     pub fn radius(&self) -> f32 {
         match *self {

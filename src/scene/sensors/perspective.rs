@@ -17,6 +17,8 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 use thiserror::Error;
 
 use super::{CameraRay, ImageSize};
+use crate::scene::error::{SceneError, list};
+use crate::scene::xml::Object;
 
 /// Along which side of the image the field of view is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,6 +115,41 @@ pub struct Perspective {
 }
 
 impl Perspective {
+    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
+        let field_of_view = match (object.float("fov")?, object.string("focal_length")?) {
+            (Some(_), Some(_)) => {
+                let message = "`fov` and `focal_length` cannot both be given";
+                return Err(object.parameter_error("focal_length", message));
+            }
+            (Some(degrees), None) => {
+                let name = object.string_or("fov_axis", "x")?;
+                let axis = FovAxis::from_name(name).ok_or_else(|| {
+                    let names = list(FovAxis::NAMES);
+                    object.parameter_error("fov_axis", format!("`fov_axis` is `{name}`; it must be one of {names}"))
+                })?;
+                FieldOfView { degrees, axis }
+            }
+            (None, focal_length) => {
+                let text = focal_length.unwrap_or("50mm");
+                let number = text.strip_suffix("mm").unwrap_or(text).trim().parse().ok();
+                let millimetres = number.filter(|&mm: &f64| mm > 0.0 && mm.is_finite()).ok_or_else(|| {
+                    let message = format!("`focal_length` is `{text}`; it must be a positive number of millimetres such as 50mm");
+                    object.parameter_error("focal_length", message)
+                })?;
+                FieldOfView::from_focal_length(millimetres)
+            }
+        };
+        let clip = (object.float_or("near_clip", 1e-2)?, object.float_or("far_clip", 1e4)?);
+        let offset = glam::DVec2::new(
+            object.float_or("principal_point_offset_x", 0.0)?,
+            object.float_or("principal_point_offset_y", 0.0)?,
+        );
+        object.float("focus_distance")?;
+        let to_world = object.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        Self::new(to_world, field_of_view, clip, offset.as_vec2())
+            .map_err(|error| object.error(error.to_string()))
+    }
+
     /// The camera whose space `to_world` maps to world space (it looks along +z, +y is up, +x is left), clipping at the
     /// depths `near` and `far` in scene units, its image shifted by `principal_point_offset` in fractions of its size.
     pub fn new(

@@ -10,10 +10,14 @@
 
 use std::f32::consts::PI;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::{HitCoordinates, ShapeSample, SurfacePoint};
+use super::Placement;
+use super::sphere::load_radius;
 use crate::sampling::Frame;
+use crate::scene::error::SceneError;
+use crate::scene::xml::Object;
 
 /// A cylinder mantle in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +44,22 @@ pub struct CylinderHit {
 }
 
 impl Cylinder {
+    pub(super) fn load(object: &Object, placement: &Placement) -> Result<Self, SceneError> {
+        let start = object.vector("p0")?.unwrap_or(DVec3::ZERO);
+        let end = object.vector("p1")?.unwrap_or(DVec3::Z);
+        let radius = load_radius(object)? * placement.uniform_scale(object)?;
+        let cylinder = Self {
+            start: placement.to_world.transform_point3(start).as_vec3(),
+            axis: placement.to_world.transform_vector3(end - start).as_vec3(),
+            radius: radius as f32,
+            flip_normals: placement.flip_normals,
+        };
+        if cylinder.area() > 0.0 {
+            return Ok(cylinder);
+        }
+        Err(object.error("the ends `p0` and `p1` of the cylinder coincide"))
+    }
+
     /// The nearest hit with a distance in (`near`, `far`), solved in double precision.
     pub fn intersect(&self, origin: Vec3, direction: Vec3, near: f32, far: f32) -> Option<CylinderHit> {
         let axis = self.axis.as_dvec3();

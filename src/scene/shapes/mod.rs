@@ -6,6 +6,7 @@
 mod cube;
 mod cylinder;
 mod disk;
+mod mesh_file;
 mod rectangle;
 mod sphere;
 mod triangles;
@@ -15,13 +16,64 @@ pub use disk::{Disk, DiskHit};
 pub use sphere::Sphere;
 pub use triangles::{TriangleAttributes, Triangles};
 
-pub(crate) use cube::cube;
-pub(crate) use rectangle::rectangle;
+use glam::{DMat3, DMat4, Vec3};
 
-use glam::Vec3;
-
+use super::error::SceneError;
+use super::load::Loader;
+use super::xml::Object;
 use super::{EmitterId, MaterialId};
 use crate::sampling::SolidAnglePdf;
+
+/// The form of a shape of a scene file.
+pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, SceneError> {
+    let to_world = object.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+    let flip_normals = object.boolean_or("flip_normals", false)?;
+    let placement = Placement { to_world, flip_normals };
+    placement.check(object)?;
+    match object.plugin.as_str() {
+        "obj" | "ply" => mesh_file::load(object, &placement, loader),
+        "rectangle" => Triangles::place(rectangle::rectangle(), &placement, object),
+        "cube" => Triangles::place(cube::cube(), &placement, object),
+        "sphere" => Sphere::load(object, &placement).map(Geometry::Sphere),
+        "disk" => Disk::load(&placement, object).map(Geometry::Disk),
+        "cylinder" => Cylinder::load(object, &placement).map(Geometry::Cylinder),
+        _ => Err(object.unsupported(&["obj", "ply", "rectangle", "cube", "sphere", "disk", "cylinder"])),
+    }
+}
+
+/// How a shape is put into the world.
+pub(super) struct Placement {
+    pub to_world: DMat4,
+    pub flip_normals: bool,
+}
+
+impl Placement {
+    fn check(&self, object: &Object) -> Result<(), SceneError> {
+        let determinant = self.to_world.determinant();
+        if determinant != 0.0 && self.to_world.is_finite() && determinant.is_finite() {
+            return Ok(());
+        }
+        Err(object.parameter_error("to_world", "`to_world` flattens the shape: the transform has no inverse"))
+    }
+
+    /// The transform of normals.
+    fn normals(&self) -> DMat3 {
+        DMat3::from_mat4(self.to_world).inverse().transpose()
+    }
+
+    /// The factor of a transform that scales all lengths alike; an error for shapes that would not stay themselves.
+    fn uniform_scale(&self, object: &Object) -> Result<f64, SceneError> {
+        let axes = DMat3::from_mat4(self.to_world);
+        let scale = axes.determinant().abs().cbrt();
+        let identity = (axes.transpose() * axes) * (1.0 / (scale * scale));
+        let deviation = (identity - DMat3::IDENTITY).to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        if deviation < 1e-4 {
+            return Ok(scale);
+        }
+        let message = format!("a `{}` stays one under uniform scaling only; `to_world` scales or shears it otherwise", object.plugin);
+        Err(object.parameter_error("to_world", message))
+    }
+}
 
 /// A shape with what it is made of.
 #[derive(Debug)]

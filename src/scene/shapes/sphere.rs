@@ -9,10 +9,13 @@
 //!
 //! As a light it is sampled by the cone of directions under which it is seen from outside, and by area from inside.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::{HitCoordinates, ShapeSample, SurfacePoint};
+use super::Placement;
 use crate::sampling::{Frame, SolidAnglePdf, warp};
+use crate::scene::error::SceneError;
+use crate::scene::xml::Object;
 
 /// A sphere in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +28,26 @@ pub struct Sphere {
     pub flip_normals: bool,
 }
 
+/// A radius in a scene file: positive.
+pub(super) fn load_radius(object: &Object) -> Result<f64, SceneError> {
+    let radius = object.float_or("radius", 1.0)?;
+    if radius > 0.0 {
+        return Ok(radius);
+    }
+    Err(object.parameter_error("radius", format!("`radius` is {radius}; it must be positive")))
+}
+
 impl Sphere {
+    pub(super) fn load(object: &Object, placement: &Placement) -> Result<Self, SceneError> {
+        let center = object.vector("center")?.unwrap_or(DVec3::ZERO);
+        let radius = load_radius(object)? * placement.uniform_scale(object)?;
+        Ok(Self {
+            center: placement.to_world.transform_point3(center).as_vec3(),
+            radius: radius as f32,
+            flip_normals: placement.flip_normals,
+        })
+    }
+
     /// The nearest distance in (`near`, `far`), in units of `direction`'s length, at which a ray in world space meets
     /// the sphere.
     ///

@@ -2,11 +2,14 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
-use super::{HitCoordinates, ShapeSample, SurfacePoint};
+use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfacePoint};
 use crate::embree::{IndexBuffer, VertexBuffer};
 use crate::sampling::{AliasTable, warp};
+use crate::scene::error::SceneError;
+use crate::scene::mesh::{self, MeshData};
+use crate::scene::xml::Object;
 
 /// A triangle mesh in world space. Its buffers are shared with the intersection layer, not copied.
 #[derive(Debug)]
@@ -29,6 +32,49 @@ pub struct TriangleAttributes {
 }
 
 impl Triangles {
+    /// A flat-sided mesh in the world. Its normals follow the transform, even one that mirrors.
+    pub(super) fn place(
+        mut mesh: MeshData,
+        placement: &Placement,
+        object: &Object,
+    ) -> Result<Geometry, SceneError> {
+        if placement.to_world.determinant() < 0.0 {
+            mesh.triangles.iter_mut().for_each(|triangle| triangle.reverse());
+        }
+        Self::place_mesh(mesh, false, placement, object)
+    }
+
+    /// A mesh in the world; `smooth` makes vertex normals for it there.
+    pub(super) fn place_mesh(
+        mut mesh: MeshData,
+        smooth: bool,
+        placement: &Placement,
+        object: &Object,
+    ) -> Result<Geometry, SceneError> {
+        for position in &mut mesh.positions {
+            let local = Vec3::from(*position).as_dvec3();
+            *position = placement.to_world.transform_point3(local).as_vec3().into();
+        }
+        if mesh.positions.iter().flatten().any(|coordinate| !coordinate.is_finite()) {
+            return Err(object.parameter_error("to_world", "`to_world` moves vertices beyond all numbers"));
+        }
+        let to_world = placement.normals();
+        let normals = match mesh.normals.take() {
+            Some(normals) => Some(
+                normals
+                    .into_iter()
+                    .map(|normal| (to_world * DVec3::from(normal.map(f64::from))).as_vec3().normalize_or_zero())
+                    .collect(),
+            ),
+            None if smooth => Some(mesh::smooth_normals(&mesh).into_iter().map(Vec3::from).collect()),
+            None => None,
+        };
+        let attributes = TriangleAttributes { normals, flip_normals: placement.flip_normals };
+        let positions = Arc::new(VertexBuffer::new(mesh.positions));
+        let indices = Arc::new(IndexBuffer::new(mesh.triangles));
+        Ok(Geometry::Triangles(Self::new(positions, indices, attributes)))
+    }
+
     /// The mesh over buffers in world space. Indices must be in range and `attributes.normals`, if given, as long as
     /// `positions` (every mesh reader of [`crate::scene::mesh`] keeps this).
     pub fn new(

@@ -15,8 +15,12 @@ struct Definition {
 }
 
 impl Definitions {
-    /// The caller's definitions, which win over every `<default>`.
-    pub(super) fn new(given: &[(String, String)]) -> Result<Self, SceneError> {
+    /// The caller's definitions, which win over every `<default>` and must be used, and its suggestions, which only
+    /// win over a `<default>`.
+    pub(super) fn new(
+        given: &[(String, String)],
+        suggestions: &[(String, String)],
+    ) -> Result<Self, SceneError> {
         let mut definitions = Self {
             entries: Vec::new(),
         };
@@ -32,6 +36,9 @@ impl Definitions {
                 )));
             }
             definitions.insert(name, value, true);
+        }
+        for (name, value) in suggestions {
+            definitions.add_default(name, value);
         }
         Ok(definitions)
     }

@@ -51,7 +51,8 @@ impl Document {
     }
 }
 
-/// Reads a scene, with `definitions` (name and value) for its `$name`s.
+/// Reads a scene, with `definitions` (name and value) for its `$name`s. `suggestions` take the place of the scene's
+/// own `<default>`s; a scene may also have no use for them.
 ///
 /// # Errors
 /// When anything in it is not as Mitsuba 3 expects it, when a file cannot be read, and when the scene does not use
@@ -59,9 +60,10 @@ impl Document {
 pub fn parse(
     source: &SceneSource,
     definitions: &[(String, String)],
+    suggestions: &[(String, String)],
 ) -> Result<Document, SceneError> {
     let mut parser = Parser {
-        definitions: Definitions::new(definitions)?,
+        definitions: Definitions::new(definitions, suggestions)?,
         drafts: Drafts::default(),
     };
     let search_path = SearchPath::working_directory();

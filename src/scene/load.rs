@@ -1,0 +1,206 @@
+//! From a scene file to a [`Scene`]: every object of the file is handed to the plugin that it names.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::bsdfs::{self, Material};
+use super::emitters::{self, Emitter};
+use super::error::SceneError;
+use super::shapes::{self, Geometry, Shape};
+use super::xml::{self, Class, Document, Object, SceneSource};
+use super::{EmitterId, IndependentSampler, MaterialId, PathIntegrator, Scene, ShapeId, sensors};
+
+/// What can be told about loading a scene.
+#[derive(Clone, Debug, Default)]
+pub struct LoadOptions {
+    /// Values for the scene's `$name`s; each must be used by the scene.
+    pub definitions: Vec<(String, String)>,
+    /// Where the models lie: the value of `$models` in scenes that use it, unless `definitions` has one.
+    pub models: Option<PathBuf>,
+}
+
+impl Scene {
+    /// Loads a scene file in Mitsuba 3's XML format, with all meshes that it names.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the file or with what it names, with file, line and column. A plugin or a parameter that
+    /// is not supported is an error, never another image.
+    pub fn load(path: impl Into<PathBuf>, options: &LoadOptions) -> Result<Self, SceneError> {
+        let path = path.into();
+        let name = path.display().to_string();
+        Self::load_from(&SceneSource::File(path), name, options)
+    }
+
+    /// The scene that is part of the program: the Cornell box with a knot, `scenes/cornell-knot.xml`.
+    ///
+    /// # Errors
+    /// `options.definitions` that the scene does not use.
+    pub fn built_in(options: &LoadOptions) -> Result<Self, SceneError> {
+        const NAME: &str = "cornell-knot.xml";
+        let text = include_str!("../../scenes/cornell-knot.xml");
+        let source = SceneSource::BuiltIn { name: NAME, text };
+        Self::load_from(&source, format!("built-in {NAME}"), options)
+    }
+
+    fn load_from(source: &SceneSource, name: String, options: &LoadOptions) -> Result<Self, SceneError> {
+        let models = options.models.as_ref().map(|path| ("models".to_owned(), path.display().to_string()));
+        let document = xml::parse(source, &options.definitions, models.as_slice())?;
+        Loader::new(&document).scene(name)
+    }
+}
+
+/// What is built up while the objects of a file are loaded.
+pub(super) struct Loader<'d> {
+    pub document: &'d Document,
+    shapes: Vec<Shape>,
+    materials: Vec<Material>,
+    emitters: Vec<Emitter>,
+    /// Materials by their object in the file, so that a bsdf that many shapes refer to is loaded once.
+    known_materials: HashMap<*const Object, MaterialId>,
+    default_material: Option<MaterialId>,
+}
+
+impl<'d> Loader<'d> {
+    fn new(document: &'d Document) -> Self {
+        Self {
+            document,
+            shapes: Vec::new(),
+            materials: Vec::new(),
+            emitters: Vec::new(),
+            known_materials: HashMap::new(),
+            default_material: None,
+        }
+    }
+
+    fn scene(mut self, name: String) -> Result<Scene, SceneError> {
+        let root = &self.document.root;
+        let integrator = match root.child(Class::Integrator)? {
+            Some(child) => PathIntegrator::load(&child.object)?,
+            None => PathIntegrator::default(),
+        };
+        let Some(sensor) = root.child(Class::Sensor)? else {
+            return Err(root.error("the scene has no sensor; it needs one, such as <sensor type=\"perspective\">"));
+        };
+        let sensors::Sensor { camera, film, sampler } = sensors::load(&sensor.object)?;
+        for child in root.children(Class::Bsdf) {
+            self.material(&child.object)?;
+        }
+        for child in root.children(Class::Shape) {
+            self.shape(&child.object)?;
+        }
+        for child in root.children(Class::Emitter) {
+            // An area light outside of a shape is there to be referred to from shapes.
+            if child.object.plugin != "area" {
+                let emitter = emitters::load(&child.object)?;
+                self.add_surrounding(&child.object, emitter)?;
+            }
+        }
+        root.finish()?;
+        Ok(Scene {
+            name,
+            shapes: self.shapes,
+            materials: self.materials,
+            emitters: self.emitters,
+            camera,
+            film,
+            integrator,
+            sampler,
+        })
+    }
+
+    fn add_surrounding(&mut self, object: &Object, emitter: Emitter) -> Result<(), SceneError> {
+        let surrounds = |emitter: &Emitter| matches!(emitter, Emitter::Constant(_));
+        if surrounds(&emitter) && self.emitters.iter().any(surrounds) {
+            return Err(object.error("the scene already has an emitter that surrounds it; it can have one"));
+        }
+        self.emitters.push(emitter);
+        Ok(())
+    }
+
+    fn material(&mut self, object: &Arc<Object>) -> Result<MaterialId, SceneError> {
+        if let Some(&known) = self.known_materials.get(&Arc::as_ptr(object)) {
+            return Ok(known);
+        }
+        let material = bsdfs::load(object)?;
+        let id = self.add_material(material);
+        self.known_materials.insert(Arc::as_ptr(object), id);
+        Ok(id)
+    }
+
+    fn add_material(&mut self, material: Material) -> MaterialId {
+        self.materials.push(material);
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    fn shape(&mut self, object: &Object) -> Result<(), SceneError> {
+        let mut geometry = shapes::load(object, self)?;
+        let material = match object.child(Class::Bsdf)? {
+            Some(child) => self.material(&child.object)?,
+            // As in Mitsuba, a shape without a bsdf is diffuse with the default reflectance.
+            None => match self.default_material {
+                Some(id) => id,
+                None => {
+                    let id = self.add_material(Material::default());
+                    self.default_material = Some(id);
+                    id
+                }
+            },
+        };
+        let id = ShapeId(self.shapes.len() as u32);
+        let emitter = match object.child(Class::Emitter)? {
+            Some(child) => {
+                let light = emitters::load_area(&child.object, id)?;
+                if let Geometry::Triangles(mesh) = &mut geometry
+                    && !mesh.prepare_sampling()
+                {
+                    return Err(object.error("this shape cannot be a light: it has no area"));
+                }
+                self.emitters.push(Emitter::Area(light));
+                Some(EmitterId(self.emitters.len() as u32 - 1))
+            }
+            None => None,
+        };
+        object.finish()?;
+        self.shapes.push(Shape { geometry, material, emitter });
+        Ok(())
+    }
+}
+
+impl PathIntegrator {
+    fn load(object: &Object) -> Result<Self, SceneError> {
+        if object.plugin != "path" {
+            return Err(object.unsupported(&["path"]));
+        }
+        let default = Self::default();
+        let max_depth = match object.integer_or("max_depth", -1)? {
+            -1 => None,
+            depth => Some(u32::try_from(depth).map_err(|_| {
+                object.parameter_error("max_depth", format!("`max_depth` is {depth}; it must be -1 (no limit) or from 0 on"))
+            })?),
+        };
+        let rr_depth = object.integer_or("rr_depth", i64::from(default.roulette_depth))?;
+        let roulette_depth = u32::try_from(rr_depth).ok().filter(|&depth| depth > 0).ok_or_else(|| {
+            object.parameter_error("rr_depth", format!("`rr_depth` is {rr_depth}; it must be from 1 on"))
+        })?;
+        let hide_emitters = object.boolean_or("hide_emitters", default.hide_emitters)?;
+        object.finish()?;
+        Ok(Self { max_depth, roulette_depth, hide_emitters })
+    }
+}
+
+impl IndependentSampler {
+    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
+        if object.plugin != "independent" {
+            return Err(object.unsupported(&["independent"]));
+        }
+        let default = Self::default();
+        let count = object.integer_or("sample_count", i64::from(default.sample_count))?;
+        let sample_count = u32::try_from(count).ok().filter(|&count| count > 0).ok_or_else(|| {
+            object.parameter_error("sample_count", format!("`sample_count` is {count}; it must be from 1 to {}", u32::MAX))
+        })?;
+        let seed = object.integer_or("seed", 0)? as u64;
+        object.finish()?;
+        Ok(Self { sample_count, seed })
+    }
+}

@@ -1,0 +1,50 @@
+//! `obj` and `ply`: triangle meshes from files (polygons become fans of triangles).
+//!
+//! | parameter | type | meaning | default |
+//! |---|---|---|---|
+//! | `filename` | string | the mesh, beside the scene or in a `<path>` | required |
+//! | `face_normals` | boolean | shade flat: ignore and do not make vertex normals | false |
+//! | `flip_normals` | boolean | let the inner side be the outer one | false |
+//! | `flip_tex_coords` | boolean | accepted with Mitsuba's meaning; nothing here looks at texture coordinates yet | |
+//! | `to_world` | transform | any affine transform | identity |
+//!
+//! A mesh without vertex normals gets smooth ones, as in Mitsuba, unless `face_normals` is set. Where a file `knot.ply` is
+//! named that does not exist, the program makes the mesh itself.
+
+use std::path::Path;
+
+use super::{Geometry, Placement, Triangles};
+use crate::scene::error::SceneError;
+use crate::scene::load::Loader;
+use crate::scene::mesh::{self, MeshData};
+use crate::scene::xml::Object;
+
+/// The mesh that the program can make itself.
+const GENERATED: &str = "knot.ply";
+
+pub(super) fn load(object: &Object, placement: &Placement, loader: &mut Loader) -> Result<Geometry, SceneError> {
+    let filename = object.string("filename")?.ok_or_else(|| object.missing("filename"))?;
+    let face_normals = object.boolean_or("face_normals", false)?;
+    object.boolean("flip_tex_coords")?;
+    let mut mesh = read(object, filename, loader)?;
+    if face_normals {
+        mesh.normals = None;
+    }
+    let smooth = !face_normals && mesh.normals.is_none();
+    Triangles::place_mesh(mesh, smooth, placement, object)
+}
+
+fn read(object: &Object, filename: &str, loader: &mut Loader) -> Result<MeshData, SceneError> {
+    let path = match loader.document.resolve(object, "filename", filename) {
+        Ok(path) => path,
+        Err(_) if Path::new(filename).file_name().is_some_and(|name| name == GENERATED) => {
+            return Ok(mesh::knot(mesh::DEFAULT_KNOT_TRIANGLES));
+        }
+        Err(error) => return Err(error),
+    };
+    let mesh = match object.plugin.as_str() {
+        "obj" => mesh::read_obj(&path),
+        _ => mesh::read_ply(&path),
+    };
+    mesh.map_err(|error| SceneError::mesh(object.parameter_location("filename"), error))
+}

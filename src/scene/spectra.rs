@@ -1,0 +1,65 @@
+//! Colours in scene files.
+
+use super::error::SceneError;
+use super::xml::{Object, SpectrumProperty};
+use crate::spectrum::{CurveError, SpectralCurve};
+
+/// What a colour is the colour of: it decides how numbers become spectra.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    /// A share of light, in [0, 1].
+    Reflectance,
+    /// Radiance, intensity and the like.
+    Emission,
+}
+
+/// The colour that `object` has under `name`, or `None` if it has none.
+pub(super) fn spectrum(
+    object: &Object,
+    name: &'static str,
+    quantity: Quantity,
+) -> Result<Option<SpectralCurve>, SceneError> {
+    let Some(property) = object.spectrum(name)? else { return Ok(None) };
+    let curve = match property {
+        SpectrumProperty::Texture(texture) => return Err(texture.unsupported(&[])),
+        SpectrumProperty::Constant(value) => constant(value as f32, quantity),
+        SpectrumProperty::Rgb(rgb) => {
+            let rgb = rgb.map(|value| value as f32);
+            match quantity {
+                Quantity::Reflectance => SpectralCurve::rgb_reflectance(rgb),
+                Quantity::Emission => SpectralCurve::rgb_emission(rgb),
+            }
+        }
+        SpectrumProperty::List(list) => {
+            let list: Vec<(f32, f32)> = list.iter().map(|&[nm, value]| (nm as f32, value as f32)).collect();
+            match quantity {
+                Quantity::Reflectance => SpectralCurve::tabulated_reflectance(&list),
+                Quantity::Emission => SpectralCurve::tabulated_emission(&list),
+            }
+        }
+    };
+    curve
+        .map(Some)
+        .map_err(|error| object.parameter_error(name, format!("`{name}`: {error}")))
+}
+
+fn constant(value: f32, quantity: Quantity) -> Result<SpectralCurve, CurveError> {
+    match quantity {
+        Quantity::Reflectance => SpectralCurve::constant_reflectance(value),
+        Quantity::Emission => SpectralCurve::constant_emission(value),
+    }
+}
+
+/// The colour under `name`, or the constant `default`.
+pub(super) fn spectrum_or(
+    object: &Object,
+    name: &'static str,
+    quantity: Quantity,
+    default: f32,
+) -> Result<SpectralCurve, SceneError> {
+    match spectrum(object, name, quantity)? {
+        Some(curve) => Ok(curve),
+        None => constant(default, quantity)
+            .map_err(|error| object.error(format!("`{name}`: {error}"))),
+    }
+}
