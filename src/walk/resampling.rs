@@ -164,19 +164,37 @@ fn jointly<P: Points>(
     for members in group.chunk_by(|one, next| one == next) {
         let nu = &nu[first..first + members.len()];
         let total = nu.iter().map(|&nu| share(nu).by_points).sum();
-        let mut points = P::drop_on(total, random).peekable();
-
-        let mut end = 0;
-        for (parent, &nu) in (first as u32..).zip(nu) {
-            let Share { certain, by_points } = share(nu);
-            end += by_points.units();
-            let mut count = certain;
-            while points.next_if(|&point| point < end).is_some() {
-                count += 1;
-            }
-            bear(children, parent, nu, count);
-        }
+        deal(
+            nu,
+            first as u32,
+            &share,
+            P::drop_on(total, random),
+            children,
+        );
         first += members.len();
+    }
+}
+
+/// Gives each particle of one group its certain children and those of the `points` that hit its interval.
+///
+/// An interval contains its beginning and not its end, so that a point on a border never hits an empty one.
+fn deal(
+    nu: &[ExpectedCount],
+    first: u32,
+    share: impl Fn(ExpectedCount) -> Share,
+    points: impl Iterator<Item = u64>,
+    children: &mut Vec<Child>,
+) {
+    let mut points = points.peekable();
+    let mut end = 0;
+    for (parent, &nu) in (first..).zip(nu) {
+        let Share { certain, by_points } = share(nu);
+        end += by_points.units();
+        let mut count = certain;
+        while points.next_if(|&point| point < end).is_some() {
+            count += 1;
+        }
+        bear(children, parent, nu, count);
     }
 }
 
@@ -234,5 +252,59 @@ impl Points for Multinomial {
             remaining *= (random.uniform_f64().ln() / left as f64).exp();
             ((end - remaining) as u64).min(total.units() - 1)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::StreamKey;
+
+    /// The parents hit by points at `at`, in units of 2^-32, where every other particle is worth nothing.
+    fn parents(at: &[u64]) -> Vec<u32> {
+        let one = ExpectedCount::positive(1.0);
+        let nu = [
+            ExpectedCount::ZERO,
+            one,
+            ExpectedCount::ZERO,
+            one,
+            ExpectedCount::ZERO,
+        ];
+        let mut children = Vec::new();
+        deal(&nu, 10, Share::all, at.iter().copied(), &mut children);
+        children.iter().map(|child| child.parent).collect()
+    }
+
+    #[test]
+    fn points_on_a_border_hit_a_particle_that_is_worth_something() {
+        const ONE: u64 = 1 << 32;
+        assert_eq!(parents(&[0, ONE]), [11, 13]);
+        assert_eq!(parents(&[ONE - 1, 2 * ONE - 1]), [11, 13]);
+        assert_eq!(parents(&[0, 0, 1, ONE]), [11, 11, 11, 13]);
+    }
+
+    #[test]
+    fn points_lie_inside_the_population_and_ascend() {
+        fn check<P: Points>(random: &mut RandomStream) {
+            for nu in [0.3, 1.0, 2.5, 1000.0] {
+                let total = ExpectedCount::positive(nu);
+                for _ in 0..1000 {
+                    let points: Vec<_> = P::drop_on(total, random).collect();
+                    assert!(
+                        points.is_sorted() && points.iter().all(|&point| point < total.units())
+                    );
+                    let number = points.len() as f32;
+                    assert!(number == nu.floor() || number == nu.ceil());
+                }
+            }
+        }
+        let mut random = RandomStream::new(StreamKey {
+            seed: 1,
+            tile: 0,
+            pass: 0,
+        });
+        check::<Systematic>(&mut random);
+        check::<Stratified>(&mut random);
+        check::<Multinomial>(&mut random);
     }
 }

@@ -74,8 +74,6 @@ fn multinomial_counts_have_the_variance_of_the_binomial() {
 
 #[test]
 fn roundings_are_ordered_by_their_noise() {
-    use crate::walk::ResidualRest;
-    use ResidualRest::{Multinomial, Stratified};
     let total = |rounding| noise(rounding, &IMPORTANCE).counts.iter().sum::<f64>();
     let systematic = total(Rounding::Systematic);
     let stratified = total(Rounding::Stratified);
