@@ -1,7 +1,6 @@
 //! How an image was made, in words.
 
 use super::{Outcome, Render};
-use crate::embree;
 use crate::transport::DirectLight;
 
 /// Everything needed to make the image again, and what making it took: name and value, for the attributes of an EXR.
@@ -20,7 +19,7 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
     let mut list = Vec::new();
     let mut add = |name: &str, value: String| list.push((format!("cohort:{name}"), value));
     add("version", env!("CARGO_PKG_VERSION").into());
-    add("embree", embree::version().to_string());
+    add("embree", render.engine().embree_version().to_string());
     add("cpu", cpu_name());
     add("scene", scene.name.clone());
     add("strategy", strategy.name().into());

@@ -8,7 +8,7 @@ use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
 use super::settings::{DirectLight, TransportSettings};
 use super::statistics::TraceStatistics;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_stage};
-use crate::embree::Coherence;
+use crate::embree::{Coherence, Version};
 use crate::film::{FilmTile, FilterSampler};
 use crate::sampling::{RandomStream, StreamKey};
 use crate::scene::{ConstantLight, Emitter, Projection, Scene};
@@ -66,6 +66,11 @@ impl Engine {
     /// The strategy.
     pub fn strategy(&self) -> &dyn Strategy {
         &*self.strategy
+    }
+
+    /// The version of the intersection layer's library.
+    pub fn embree_version(&self) -> Version {
+        self.accelerator.scene().device().version()
     }
 
     /// The light that surrounds the scene, if there is one.

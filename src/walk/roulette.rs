@@ -61,6 +61,16 @@ impl Roulette {
     }
 }
 
+impl Default for Roulette {
+    /// With the paper's T and P.
+    fn default() -> Self {
+        Self {
+            threshold: Self::DEFAULT_THRESHOLD,
+            termination: Self::DEFAULT_TERMINATION,
+        }
+    }
+}
+
 impl Strategy for Roulette {
     fn name(&self) -> &'static str {
         Self::NAME
