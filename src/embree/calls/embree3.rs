@@ -1,0 +1,206 @@
+//! Embree 3: a context for every call, and streams of its own.
+
+use std::ptr::null_mut;
+
+use super::super::geometry::INVALID_GEOMETRY;
+use super::super::packet::{RayHitPacket, RayPacket, ValidMask};
+use super::super::query::Coherence;
+use super::super::raw;
+use super::super::ray::{Ray1, RayHit1};
+use super::super::scene::Scene;
+use super::super::stream::{Hits, Rays};
+
+/// Streams of structures are handed over in parts whose length fits Embree's 32 bits.
+const LONGEST: usize = 1 << 30;
+
+/// What `rtcInitIntersectContext` makes, which is an inline function of the header.
+fn context(coherence: Coherence) -> raw::RTCIntersectContext {
+    raw::RTCIntersectContext {
+        flags: match coherence {
+            Coherence::Coherent => raw::RTCIntersectContextFlags::COHERENT,
+            Coherence::Incoherent => raw::RTCIntersectContextFlags::INCOHERENT,
+        },
+        filter: None,
+        instID: [INVALID_GEOMETRY],
+    }
+}
+
+pub fn intersect1(scene: &Scene, ray_hit: &mut RayHit1, coherence: Coherence) {
+    // SAFETY: see the module `calls`.
+    unsafe {
+        raw::rtcIntersect1(
+            scene.raw(),
+            &mut context(coherence),
+            (&raw mut *ray_hit).cast(),
+        );
+    }
+}
+
+pub fn occluded1(scene: &Scene, ray: &mut Ray1, coherence: Coherence) {
+    // SAFETY: see the module `calls`.
+    unsafe { raw::rtcOccluded1(scene.raw(), &mut context(coherence), (&raw mut *ray).cast()) }
+}
+
+pub fn intersect_packet<const K: usize>(
+    scene: &Scene,
+    valid: &ValidMask<K>,
+    packet: &mut RayHitPacket<K>,
+    coherence: Coherence,
+) {
+    const { assert!(K == 4 || K == 8 || K == 16, "packets have 4, 8 or 16 rays") }
+    let (valid, scene, context) = (valid.as_ptr(), scene.raw(), &mut context(coherence));
+    let packet = &raw mut *packet;
+    // SAFETY: see the module `calls`; the width is that of the function called.
+    unsafe {
+        match K {
+            4 => raw::rtcIntersect4(valid, scene, context, packet.cast()),
+            8 => raw::rtcIntersect8(valid, scene, context, packet.cast()),
+            _ => raw::rtcIntersect16(valid, scene, context, packet.cast()),
+        }
+    }
+}
+
+pub fn occluded_packet<const K: usize>(
+    scene: &Scene,
+    valid: &ValidMask<K>,
+    packet: &mut RayPacket<K>,
+    coherence: Coherence,
+) {
+    const { assert!(K == 4 || K == 8 || K == 16, "packets have 4, 8 or 16 rays") }
+    let (valid, scene, context) = (valid.as_ptr(), scene.raw(), &mut context(coherence));
+    let packet = &raw mut *packet;
+    // SAFETY: see the module `calls`; the width is that of the function called.
+    unsafe {
+        match K {
+            4 => raw::rtcOccluded4(valid, scene, context, packet.cast()),
+            8 => raw::rtcOccluded8(valid, scene, context, packet.cast()),
+            _ => raw::rtcOccluded16(valid, scene, context, packet.cast()),
+        }
+    }
+}
+
+/// The arrays of a stream. Embree takes those that are null for time 0, all bits of the mask, no
+/// number and no flag (`RayStreamSOP` in its `kernels/common/ray.h`).
+fn ray_pointers(rays: &mut Rays) -> raw::RTCRayNp {
+    let [org_x, org_y, org_z] = rays.origin.each_mut().map(|axis| axis.as_mut_ptr());
+    let [dir_x, dir_y, dir_z] = rays.direction.each_mut().map(|axis| axis.as_mut_ptr());
+    raw::RTCRayNp {
+        org_x,
+        org_y,
+        org_z,
+        tnear: rays.tnear.as_mut_ptr(),
+        dir_x,
+        dir_y,
+        dir_z,
+        time: null_mut(),
+        tfar: rays.tfar.as_mut_ptr(),
+        mask: null_mut(),
+        id: null_mut(),
+        flags: null_mut(),
+    }
+}
+
+/// The arrays of the hits; the instance is not asked for.
+fn hit_pointers(hits: &mut Hits) -> raw::RTCHitNp {
+    let [normal_x, normal_y, normal_z] = hits.normal.each_mut().map(|axis| axis.as_mut_ptr());
+    raw::RTCHitNp {
+        Ng_x: normal_x,
+        Ng_y: normal_y,
+        Ng_z: normal_z,
+        u: hits.u.as_mut_ptr(),
+        v: hits.v.as_mut_ptr(),
+        primID: hits.primitive_id.as_mut_ptr(),
+        geomID: hits.geometry_id.as_mut_ptr(),
+        instID: [null_mut()],
+    }
+}
+
+pub fn intersect_stream(scene: &Scene, rays: &mut Rays, hits: &mut Hits, coherence: Coherence) {
+    let len = rays.len();
+    assert_eq!(hits.len(), len, "a stream has as many hits as rays");
+    let pointers = raw::RTCRayHitNp {
+        ray: ray_pointers(rays),
+        hit: hit_pointers(hits),
+    };
+    // SAFETY: see the module `calls`; all arrays have `len` elements, which fits 32 bits.
+    unsafe { raw::rtcIntersectNp(scene.raw(), &mut context(coherence), &pointers, len as u32) }
+}
+
+pub fn occluded_stream(scene: &Scene, rays: &mut Rays, coherence: Coherence) {
+    let len = rays.len() as u32;
+    let pointers = ray_pointers(rays);
+    // SAFETY: see the module `calls`; all arrays have `len` elements, which fits 32 bits.
+    unsafe { raw::rtcOccludedNp(scene.raw(), &mut context(coherence), &pointers, len) }
+}
+
+pub fn intersect_stream_1m(scene: &Scene, rays: &mut [RayHit1], coherence: Coherence) {
+    for part in rays.chunks_mut(LONGEST) {
+        // SAFETY: see the module `calls`; the slice has that many rays at that distance.
+        unsafe {
+            raw::rtcIntersect1M(
+                scene.raw(),
+                &mut context(coherence),
+                part.as_mut_ptr().cast(),
+                part.len() as u32,
+                size_of::<RayHit1>(),
+            );
+        }
+    }
+}
+
+pub fn occluded_stream_1m(scene: &Scene, rays: &mut [Ray1], coherence: Coherence) {
+    for part in rays.chunks_mut(LONGEST) {
+        // SAFETY: see the module `calls`; the slice has that many rays at that distance.
+        unsafe {
+            raw::rtcOccluded1M(
+                scene.raw(),
+                &mut context(coherence),
+                part.as_mut_ptr().cast(),
+                part.len() as u32,
+                size_of::<Ray1>(),
+            );
+        }
+    }
+}
+
+pub fn intersect_stream_nm<const K: usize>(
+    scene: &Scene,
+    packets: &mut [RayHitPacket<K>],
+    coherence: Coherence,
+) {
+    const { assert!(K == 4 || K == 8 || K == 16, "packets have 4, 8 or 16 rays") }
+    for part in packets.chunks_mut(LONGEST) {
+        // SAFETY: see the module `calls`; the slice has that many packets at that distance.
+        unsafe {
+            raw::rtcIntersectNM(
+                scene.raw(),
+                &mut context(coherence),
+                part.as_mut_ptr().cast(),
+                K as u32,
+                part.len() as u32,
+                size_of::<RayHitPacket<K>>(),
+            );
+        }
+    }
+}
+
+pub fn occluded_stream_nm<const K: usize>(
+    scene: &Scene,
+    packets: &mut [RayPacket<K>],
+    coherence: Coherence,
+) {
+    const { assert!(K == 4 || K == 8 || K == 16, "packets have 4, 8 or 16 rays") }
+    for part in packets.chunks_mut(LONGEST) {
+        // SAFETY: see the module `calls`; the slice has that many packets at that distance.
+        unsafe {
+            raw::rtcOccludedNM(
+                scene.raw(),
+                &mut context(coherence),
+                part.as_mut_ptr().cast(),
+                K as u32,
+                part.len() as u32,
+                size_of::<RayPacket<K>>(),
+            );
+        }
+    }
+}

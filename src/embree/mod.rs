@@ -1,0 +1,52 @@
+//! Ray tracing by Embree, made safe: the only room of the house with `unsafe` code.
+//!
+//! A [`Device`] holds what Embree shares between scenes. A [`SceneBuilder`] collects
+//! [`TriangleMesh`]es and [`UserGeometry`] and builds a [`Scene`], which is then traced from any
+//! number of threads by one of four kinds of call:
+//!
+//! | call | rays | when |
+//! |---|---|---|
+//! | [`Scene::intersect1`] | [`RayHit1`] | one ray at a time |
+//! | [`Scene::intersect_packet`] | [`RayHitPacket`] of 4, 8 or 16 | rays with much in common |
+//! | [`Scene::intersect_stream`] | [`Rays`] and [`Hits`], a structure of arrays | batches |
+//! | [`Scene::intersect_stream_1m`], [`Scene::intersect_stream_nm`] | slices of the first two | |
+//!
+//! and the `occluded` form of each, which only asks whether anything is in the way.
+//!
+//! Debian's Embree 3.13 and Embree 4.3 are both served and `build.rs` chooses; `raw` and `calls`
+//! are the only files that know which one it is. All of this room works in world space.
+#![allow(unsafe_code)]
+
+mod buffer;
+mod calls;
+mod denormals;
+mod device;
+mod error;
+mod geometry;
+mod lanes;
+mod packet;
+mod query;
+mod raw;
+mod ray;
+mod scene;
+mod stream;
+mod triangle_mesh;
+mod user_geometry;
+mod version;
+
+#[cfg(test)]
+mod tests;
+
+pub use buffer::{IndexBuffer, PaddedBuffer, VertexBuffer};
+pub use denormals::{DenormalsFlushed, flush_denormals_to_zero};
+pub use device::Device;
+pub use error::{EmbreeError, ErrorKind};
+pub use geometry::{Bounds, GeometryId, INVALID_GEOMETRY};
+pub use packet::{HitPacket, RayHitPacket, RayPacket, ValidMask};
+pub use query::Coherence;
+pub use ray::{Hit1, Ray1, RayHit1};
+pub use scene::{BuildOptions, BuildQuality, Scene, SceneBuilder};
+pub use stream::{Hits, Rays, RaysMut};
+pub use triangle_mesh::TriangleMesh;
+pub use user_geometry::{UserGeometry, UserHit, UserRay};
+pub use version::{Version, version};

@@ -1,0 +1,2 @@
+/* What bindgen reads to declare Embree 3. */
+#include <embree3/rtcore.h>
