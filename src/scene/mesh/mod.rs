@@ -1,5 +1,7 @@
 //! Triangle meshes as files hold them and as generators make them.
 
+pub mod knot;
+
 /// A triangle mesh in its own space.
 ///
 /// Invariants (kept by every reader and generator): at least one triangle, every index below
