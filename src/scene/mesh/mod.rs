@@ -1,6 +1,7 @@
 //! Triangle meshes as files hold them and as generators make them.
 
 mod error;
+pub mod knot;
 
 pub use error::{MeshError, MeshProblem};
 
