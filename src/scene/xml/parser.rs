@@ -189,7 +189,10 @@ fn search_directory(element: &Element, parent: Parent, file: &mut File) -> Resul
     if !parent.is_file_root {
         return Err(element.error("<path> can only stand directly inside the root element"));
     }
-    let directory = element.convert("value", |name| file.search_path.find(name))?;
+    let directory = element.convert("value", |name| match file.search_path.find(name)? {
+        directory if directory.is_dir() => Ok(directory),
+        _ => Err(format!("`{name}` is not a directory")),
+    })?;
     file.search_path.prepend(directory);
     Ok(())
 }
