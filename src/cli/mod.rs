@@ -33,7 +33,9 @@ pub fn run() -> ExitCode {
     };
     let result = match arguments.command {
         Command::Render(arguments) => render::run(*arguments),
-        Command::Models(arguments) => models::run(arguments).map(|()| ExitCode::SUCCESS).map_err(Into::into),
+        Command::Models(arguments) => models::run(arguments)
+            .map(|()| ExitCode::SUCCESS)
+            .map_err(Into::into),
     };
     result.unwrap_or_else(|error| {
         report(&*error);

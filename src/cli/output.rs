@@ -30,7 +30,10 @@ impl OutputFiles {
             None => {}
             Some(_) => return Err(OutputError::Extension(output.to_owned())),
         }
-        let files = Self { exr: output.with_extension("exr"), png: output.with_extension("png") };
+        let files = Self {
+            exr: output.with_extension("exr"),
+            png: output.with_extension("png"),
+        };
         for path in [&files.exr, &files.png] {
             WholeFile::create(path)?;
         }
@@ -41,7 +44,9 @@ impl OutputFiles {
 /// The most memory that the process has used, in MiB, where the system tells.
 pub fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes / 1024.0)
 }

@@ -10,7 +10,9 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use cohort::embree::BuildQuality;
 use cohort::film::{ExrOptions, write_exr, write_png};
-use cohort::render::{Budget, ColourMode, Ended, Observer, Outcome, Progress, Render, Settings, StopFlag, metadata};
+use cohort::render::{
+    Budget, ColourMode, Ended, Observer, Outcome, Progress, Render, Settings, StopFlag, metadata,
+};
 use cohort::scene::{LoadOptions, Scene};
 use cohort::transport::DirectLight;
 use cohort::walk::{Rounding, Scope, Strategy, StrategyKind, StrategyOptions};
@@ -132,12 +134,16 @@ enum Quality {
 }
 
 fn parse_size(text: &str) -> Result<(i64, i64), String> {
-    let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let sides = text
+        .split_once('x')
+        .and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     sides.ok_or_else(|| "a size is written WxH, such as 800x600".to_owned())
 }
 
 fn parse_definition(text: &str) -> Result<(String, String), String> {
-    let pair = text.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
+    let pair = text
+        .split_once('=')
+        .map(|(name, value)| (name.to_owned(), value.to_owned()));
     pair.ok_or_else(|| "a definition is written name=value".to_owned())
 }
 
@@ -171,12 +177,19 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
 impl RenderArgs {
     fn output_path(&self) -> PathBuf {
         let of_scene = || self.scene.as_ref()?.file_stem().map(PathBuf::from);
-        let by_default = || of_scene().unwrap_or_else(|| "cornell-knot".into()).with_extension("exr");
+        let by_default = || {
+            of_scene()
+                .unwrap_or_else(|| "cornell-knot".into())
+                .with_extension("exr")
+        };
         self.output.clone().unwrap_or_else(by_default)
     }
 
     fn load(&self) -> Result<Scene, Box<dyn Error>> {
-        let options = LoadOptions { definitions: self.definitions.clone(), models: self.models.clone() };
+        let options = LoadOptions {
+            definitions: self.definitions.clone(),
+            models: self.models.clone(),
+        };
         let mut scene = match &self.scene {
             Some(path) => Scene::load(path, &options)?,
             None => Scene::built_in(&options)?,
@@ -198,7 +211,11 @@ impl RenderArgs {
             },
             threads: self.threads.unwrap_or(default.threads),
             seed: self.seed.unwrap_or(scene.sampler.seed),
-            colour: if self.rgb { ColourMode::Rgb } else { ColourMode::Spectral },
+            colour: if self.rgb {
+                ColourMode::Rgb
+            } else {
+                ColourMode::Spectral
+            },
             direct_light: match self.direct {
                 Direct::NextEvent => DirectLight::NextEvent,
                 Direct::Off => DirectLight::Off,
@@ -254,7 +271,8 @@ impl Bar {
     fn new() -> Self {
         let template = "{wide_bar} {percent:>3} % | {msg} | {elapsed} gone, {eta} left";
         // The template is a constant; if it were wrong, a plain bar would do.
-        let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+        let style =
+            ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
         Self(ProgressBar::new(Self::STEPS).with_style(style))
     }
 }
@@ -262,7 +280,8 @@ impl Bar {
 impl Observer for Bar {
     fn progress(&self, progress: &Progress) {
         let rays_per_second = progress.rays as f64 / progress.elapsed.as_secs_f64().max(1e-9);
-        self.0.set_position((progress.share * Self::STEPS as f64) as u64);
+        self.0
+            .set_position((progress.share * Self::STEPS as f64) as u64);
         self.0.set_message(format!(
             "{:.1} samples per pixel, {:.2} Mrays/s",
             progress.samples_per_pixel,
@@ -301,6 +320,9 @@ fn summarise(render: &Render, outcome: &Outcome, files: &OutputFiles) {
         );
     }
     if statistics.walk.dropped() > 0 {
-        println!("dropped: {} particles whose importance was no number", statistics.walk.dropped());
+        println!(
+            "dropped: {} particles whose importance was no number",
+            statistics.walk.dropped()
+        );
     }
 }

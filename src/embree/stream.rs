@@ -2,6 +2,7 @@
 
 use super::geometry::INVALID_GEOMETRY;
 use super::lanes::Lanes;
+use super::ray::Hit1;
 
 /// Rays in world space: origin + t · direction for t from `tnear` to `tfar`. One whose `tnear` is
 /// above its `tfar` is inactive: it is not traced.
@@ -173,6 +174,20 @@ impl Hits {
         self.primitive_id.resize(len);
         self.geometry_id.resize(len);
         self.geometry_id.fill(INVALID_GEOMETRY);
+    }
+
+    /// Puts the hit of ray `i` in its place.
+    ///
+    /// # Panics
+    /// When `i` is not below [`len`](Self::len).
+    pub fn set(&mut self, i: usize, hit: &Hit1) {
+        for axis in 0..3 {
+            self.normal[axis][i] = hit.normal[axis];
+        }
+        self.u[i] = hit.u;
+        self.v[i] = hit.v;
+        self.primitive_id[i] = hit.primitive_id;
+        self.geometry_id[i] = hit.geometry_id;
     }
 
     /// How many rays were traced.

@@ -21,12 +21,20 @@ pub struct ExrOptions {
 
 impl Default for ExrOptions {
     fn default() -> Self {
-        Self { format: PixelFormat::Rgb, half_precision: false, attributes: Vec::new() }
+        Self {
+            format: PixelFormat::Rgb,
+            half_precision: false,
+            attributes: Vec::new(),
+        }
     }
 }
 
 /// Writes an image as EXR: scan lines, ZIP compression, primaries of ITU-R BT.709.
-pub fn write_exr(path: &Path, image: &Image, options: &ExrOptions) -> std::result::Result<(), FilmFileError> {
+pub fn write_exr(
+    path: &Path,
+    image: &Image,
+    options: &ExrOptions,
+) -> std::result::Result<(), FilmFileError> {
     let size = image.size();
     let column = |value: &dyn Fn(&[f32; 3]) -> f32| {
         let values = image.pixels().iter().map(value);
@@ -57,7 +65,10 @@ pub fn write_exr(path: &Path, image: &Image, options: &ExrOptions) -> std::resul
     let layer = Layer::new(
         Vec2(size.width as usize, size.height as usize),
         attributes,
-        Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS },
+        Encoding {
+            compression: Compression::ZIP16,
+            ..Encoding::FAST_LOSSLESS
+        },
         AnyChannels::sort(channels),
     );
     let mut file = exr::image::Image::from_layer(layer);
@@ -68,16 +79,21 @@ pub fn write_exr(path: &Path, image: &Image, options: &ExrOptions) -> std::resul
         white: Vec2(0.3127, 0.3290),
     });
     WholeFile::create(path)?.finish(|writer| {
-        file.write().to_buffered(writer).map_err(|error| FilmFileError::Encode {
-            path: path.to_owned(),
-            message: error.to_string(),
-        })
+        file.write()
+            .to_buffered(writer)
+            .map_err(|error| FilmFileError::Encode {
+                path: path.to_owned(),
+                message: error.to_string(),
+            })
     })
 }
 
 /// Reads the R, G and B channels of an EXR.
 pub fn read_exr(path: &Path) -> std::result::Result<Image, FilmFileError> {
-    let refuse = |message: String| FilmFileError::Read { path: path.to_owned(), message };
+    let refuse = |message: String| FilmFileError::Read {
+        path: path.to_owned(),
+        message,
+    };
     let file = exr::prelude::read_first_rgba_layer_from_file(
         path,
         |resolution, _| (resolution.width(), vec![[0.0_f32; 3]; resolution.area()]),
@@ -88,7 +104,10 @@ pub fn read_exr(path: &Path) -> std::result::Result<Image, FilmFileError> {
     .map_err(|error| refuse(error.to_string()))?;
     let resolution = file.layer_data.size;
     let side = |n: usize| u32::try_from(n).map_err(|_| refuse("it is too large".into()));
-    let size = ImageSize { width: side(resolution.width())?, height: side(resolution.height())? };
+    let size = ImageSize {
+        width: side(resolution.width())?,
+        height: side(resolution.height())?,
+    };
     let mut image = Image::black(size);
     let (_, pixels) = file.layer_data.channel_data.pixels;
     for (index, pixel) in pixels.into_iter().enumerate() {
@@ -105,7 +124,10 @@ mod tests {
     fn what_is_written_is_read_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
-        let mut image = Image::black(ImageSize { width: 3, height: 2 });
+        let mut image = Image::black(ImageSize {
+            width: 3,
+            height: 2,
+        });
         *image.pixel_mut(2, 1) = [1.5, -0.25, 1e6];
         *image.pixel_mut(0, 0) = [0.1, 0.2, 0.3];
         let options = ExrOptions {
@@ -115,8 +137,14 @@ mod tests {
         write_exr(&path, &image, &options).unwrap();
         assert_eq!(read_exr(&path).unwrap(), image);
         let meta = MetaData::read_from_file(&path, false).unwrap();
-        let attribute = meta.headers[0].own_attributes.other.get(&Text::from("cohort:strategy"));
-        assert_eq!(attribute, Some(&AttributeValue::Text(Text::from("roulette"))));
+        let attribute = meta.headers[0]
+            .own_attributes
+            .other
+            .get(&Text::from("cohort:strategy"));
+        assert_eq!(
+            attribute,
+            Some(&AttributeValue::Text(Text::from("roulette")))
+        );
     }
 
     #[test]

@@ -53,7 +53,10 @@ impl FilterSampler {
     /// near the border are means over the part of the filter that is inside (as in Mitsuba).
     pub fn new(film: &FilmDescription) -> Self {
         let axis = |length| Axis::new(film.filter, length, film.sample_border);
-        Self { columns: axis(film.crop.size.width), rows: axis(film.crop.size.height) }
+        Self {
+            columns: axis(film.crop.size.width),
+            rows: axis(film.crop.size.height),
+        }
     }
 
     /// Draws a position for the pixel in column `x` and row `y` of the crop window from uniform numbers in [0, 1).
@@ -70,7 +73,11 @@ impl FilterSampler {
 
 impl Axis {
     fn new(filter: ReconstructionFilter, length: u32, sample_border: bool) -> Self {
-        let reach = if sample_border { 0 } else { (filter.radius() - 0.5).ceil().max(0.0) as u32 };
+        let reach = if sample_border {
+            0
+        } else {
+            (filter.radius() - 0.5).ceil().max(0.0) as u32
+        };
         // A distance beyond what the film is long never occurs.
         let reach = reach.min(length);
         let limit = |distance: u32| match distance {
@@ -81,7 +88,11 @@ impl Axis {
             .flat_map(|before| (0..=reach).map(move |after| (before, after)))
             .map(|(before, after)| Profile::new(filter, -limit(before), limit(after)))
             .collect();
-        Self { length, reach, profiles }
+        Self {
+            length,
+            reach,
+            profiles,
+        }
     }
 
     #[inline]
@@ -100,7 +111,11 @@ struct AxisSample {
 
 impl Profile {
     fn new(filter: ReconstructionFilter, start: f32, end: f32) -> Self {
-        let bins = if filter == ReconstructionFilter::Box { 1 } else { BINS };
+        let bins = if filter == ReconstructionFilter::Box {
+            1
+        } else {
+            BINS
+        };
         let bin_width = (end - start) / bins as f32;
         let (mut mass, mut integral) = (Vec::with_capacity(bins), 0.0);
         const POINTS: usize = 32;
@@ -126,23 +141,39 @@ impl Profile {
         if let Some(last) = cumulative.last_mut() {
             *last = 1.0;
         }
-        Self { filter, start, bin_width, cumulative, normalisation: (1.0 / integral) as f32 }
+        Self {
+            filter,
+            start,
+            bin_width,
+            cumulative,
+            normalisation: (1.0 / integral) as f32,
+        }
     }
 
     #[inline]
     fn sample(&self, u: f32) -> AxisSample {
         let last = self.cumulative.len() - 1;
         let bin = self.cumulative.partition_point(|&c| c <= u).min(last);
-        let below = if bin == 0 { 0.0 } else { self.cumulative[bin - 1] };
+        let below = if bin == 0 {
+            0.0
+        } else {
+            self.cumulative[bin - 1]
+        };
         let probability = self.cumulative[bin] - below;
         let within = ((u - below) / probability).clamp(0.0, 1.0);
         let offset = self.start + (bin as f32 + within) * self.bin_width;
         if self.filter == ReconstructionFilter::Box {
-            return AxisSample { offset, weight: 1.0 };
+            return AxisSample {
+                offset,
+                weight: 1.0,
+            };
         }
         let density = probability / self.bin_width;
         let value = self.filter.profile(f64::from(offset)) as f32;
-        AxisSample { offset, weight: value * self.normalisation / density }
+        AxisSample {
+            offset,
+            weight: value * self.normalisation / density,
+        }
     }
 }
 
@@ -152,14 +183,20 @@ mod tests {
     use crate::sampling::{RandomStream, StreamKey};
 
     fn film(filter: ReconstructionFilter) -> FilmDescription {
-        FilmDescription { filter, ..FilmDescription::new(7, 5).unwrap() }
+        FilmDescription {
+            filter,
+            ..FilmDescription::new(7, 5).unwrap()
+        }
     }
 
     const FILTERS: [ReconstructionFilter; 4] = [
         ReconstructionFilter::Box,
         ReconstructionFilter::Tent { radius: 1.0 },
         ReconstructionFilter::Gaussian { stddev: 0.5 },
-        ReconstructionFilter::Mitchell { b: 1.0 / 3.0, c: 1.0 / 3.0 },
+        ReconstructionFilter::Mitchell {
+            b: 1.0 / 3.0,
+            c: 1.0 / 3.0,
+        },
     ];
 
     #[test]
@@ -168,13 +205,20 @@ mod tests {
         for filter in FILTERS {
             let sampler = FilterSampler::new(&film(filter));
             for pixel in 0..7 {
-                let mut random = RandomStream::new(StreamKey { seed: 3, tile: pixel, pass: 0 });
+                let mut random = RandomStream::new(StreamKey {
+                    seed: 3,
+                    tile: pixel,
+                    pass: 0,
+                });
                 let (mut sum, mut weights) = (0.0, 0.0);
                 let n = 100_000;
                 for _ in 0..n {
                     let sample = sampler.sample(pixel, 2, random.uniform_2d());
                     let x = pixel as f32 + 0.5 + sample.offset.x;
-                    assert!((0.0..=7.0).contains(&x), "{filter:?}: sample at {x} is outside the film");
+                    assert!(
+                        (0.0..=7.0).contains(&x),
+                        "{filter:?}: sample at {x} is outside the film"
+                    );
                     sum += f64::from(sample.weight * x.cos()) / f64::from(n);
                     weights += f64::from(sample.weight) / f64::from(n);
                 }
@@ -185,8 +229,15 @@ mod tests {
                     want += f * x.cos();
                     norm += f;
                 }
-                assert!((weights - 1.0).abs() < 0.02, "{filter:?} {pixel}: {weights}");
-                assert!((sum - want / norm).abs() < 0.02, "{filter:?} {pixel}: {sum} {}", want / norm);
+                assert!(
+                    (weights - 1.0).abs() < 0.02,
+                    "{filter:?} {pixel}: {weights}"
+                );
+                assert!(
+                    (sum - want / norm).abs() < 0.02,
+                    "{filter:?} {pixel}: {sum} {}",
+                    want / norm
+                );
             }
         }
     }

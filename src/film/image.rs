@@ -45,7 +45,10 @@ pub enum FilmFileError {
 impl Image {
     /// A black image.
     pub fn black(size: ImageSize) -> Self {
-        Self { size, pixels: vec![[0.0; 3]; size.pixels()] }
+        Self {
+            size,
+            pixels: vec![[0.0; 3]; size.pixels()],
+        }
     }
 
     /// Size in pixels.
@@ -87,7 +90,11 @@ impl Image {
     }
 
     fn index(&self, x: u32, y: u32) -> usize {
-        assert!(x < self.size.width && y < self.size.height, "pixel ({x}, {y}) of {:?}", self.size);
+        assert!(
+            x < self.size.width && y < self.size.height,
+            "pixel ({x}, {y}) of {:?}",
+            self.size
+        );
         y as usize * self.size.width as usize + x as usize
     }
 }

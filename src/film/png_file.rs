@@ -13,7 +13,11 @@ const SHOULDER: f32 = 0.8;
 /// with its hue kept: a lamp is white or coloured instead of cut off channel by channel.
 pub fn write_png(path: &Path, image: &Image) -> Result<(), FilmFileError> {
     let size = image.size();
-    let bytes: Vec<u8> = image.pixels().iter().flat_map(|&pixel| tone_map(pixel).map(encode)).collect();
+    let bytes: Vec<u8> = image
+        .pixels()
+        .iter()
+        .flat_map(|&pixel| tone_map(pixel).map(encode))
+        .collect();
     WholeFile::create(path)?.finish(|writer| {
         let refuse = |error: png::EncodingError| FilmFileError::Encode {
             path: path.to_owned(),
@@ -38,7 +42,13 @@ fn tone_map(pixel: [f32; 3]) -> [f32; 3] {
     }
     let rest = 1.0 - SHOULDER;
     let compressed = SHOULDER + rest * (1.0 - (-(peak - SHOULDER) / rest).exp());
-    positive.map(|value| if value.is_finite() { value * (compressed / peak) } else { 1.0 })
+    positive.map(|value| {
+        if value.is_finite() {
+            value * (compressed / peak)
+        } else {
+            1.0
+        }
+    })
 }
 
 /// The transfer function of sRGB (IEC 61966-2-1).

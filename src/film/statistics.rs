@@ -30,7 +30,13 @@ impl PixelStatistics {
 
     /// The mean of the samples; black while there are none.
     pub fn mean(&self) -> [f64; 3] {
-        self.sum.map(|sum| if self.samples == 0 { 0.0 } else { sum / self.samples as f64 })
+        self.sum.map(|sum| {
+            if self.samples == 0 {
+                0.0
+            } else {
+                sum / self.samples as f64
+            }
+        })
     }
 
     /// The estimated variance of [`Self::mean`], or `None` with fewer than two units.
@@ -61,7 +67,11 @@ mod tests {
         let (mut mean, mut squares, mut variance) = (0.0, 0.0, 0.0);
         let runs = 4000;
         for run in 0..runs {
-            let mut random = RandomStream::new(StreamKey { seed: 5, tile: run, pass: 0 });
+            let mut random = RandomStream::new(StreamKey {
+                seed: 5,
+                tile: run,
+                pass: 0,
+            });
             let mut pixel = PixelStatistics::default();
             for samples in [1, 1, 2, 4, 8, 16, 16, 3] {
                 let sum: f64 = (0..samples).map(|_| random.uniform_f64()).sum();

@@ -24,7 +24,10 @@ impl FilmTile {
     #[inline]
     pub fn position(&self, index: usize) -> (u32, u32) {
         let index = index as u32;
-        (self.x + index % self.size.width, self.y + index / self.size.width)
+        (
+            self.x + index % self.size.width,
+            self.y + index / self.size.width,
+        )
     }
 }
 
@@ -44,7 +47,12 @@ impl Film {
                 width: TILE_SIDE.min(size.width - x),
                 height: TILE_SIDE.min(size.height - y),
             };
-            FilmTile { x, y, size, pixels: vec![PixelStatistics::default(); size.pixels()] }
+            FilmTile {
+                x,
+                y,
+                size,
+                pixels: vec![PixelStatistics::default(); size.pixels()],
+            }
         };
         let tiles = starts(size.height)
             .flat_map(|y| starts(size.width).map(move |x| tile(x, y)))
@@ -75,7 +83,14 @@ impl Film {
     /// The variance of the mean of every pixel, or `None` if one does not know it.
     pub fn variance(&self) -> Option<Image> {
         let known = self.pixels().all(|pixel| pixel.units >= 2);
-        known.then(|| self.map(|pixel| pixel.variance_of_mean().unwrap_or_default().map(|v| v as f32)))
+        known.then(|| {
+            self.map(|pixel| {
+                pixel
+                    .variance_of_mean()
+                    .unwrap_or_default()
+                    .map(|v| v as f32)
+            })
+        })
     }
 
     /// The pixels in no particular order.
@@ -101,7 +116,10 @@ mod tests {
 
     #[test]
     fn tiles_cover_every_pixel_once() {
-        let mut film = Film::new(ImageSize { width: 37, height: 18 });
+        let mut film = Film::new(ImageSize {
+            width: 37,
+            height: 18,
+        });
         for tile in film.tiles_mut() {
             for index in 0..tile.pixels.len() {
                 let (x, y) = tile.position(index);

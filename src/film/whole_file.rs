@@ -19,12 +19,21 @@ impl WholeFile {
     /// Opens the temporary file. Fails at once where `path` cannot be written: its folder is missing or read-only, or
     /// the path is a folder.
     pub fn create(path: &Path) -> Result<Self, FilmFileError> {
-        let refuse = |source| FilmFileError::Write { path: path.to_owned(), source };
+        let refuse = |source| FilmFileError::Write {
+            path: path.to_owned(),
+            source,
+        };
         let Some(name) = path.file_name() else {
-            return Err(refuse(io::Error::new(io::ErrorKind::InvalidInput, "it does not name a file")));
+            return Err(refuse(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "it does not name a file",
+            )));
         };
         if path.is_dir() {
-            return Err(refuse(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")));
+            return Err(refuse(io::Error::new(
+                io::ErrorKind::IsADirectory,
+                "it is a folder",
+            )));
         }
         let mut temporary_name = std::ffi::OsString::from(".");
         temporary_name.push(name);
@@ -37,7 +46,11 @@ impl WholeFile {
             .truncate(true)
             .open(&temporary)
             .map_err(refuse)?;
-        Ok(Self { path: path.to_owned(), temporary, file: Some(file) })
+        Ok(Self {
+            path: path.to_owned(),
+            temporary,
+            file: Some(file),
+        })
     }
 
     /// Writes all of the content with `write`, syncs it to the disk and gives the file its name.
@@ -45,14 +58,22 @@ impl WholeFile {
         mut self,
         write: impl FnOnce(&mut BufWriter<File>) -> Result<(), FilmFileError>,
     ) -> Result<(), FilmFileError> {
-        let Some(file) = self.file.take() else { return Ok(()) };
+        let Some(file) = self.file.take() else {
+            return Ok(());
+        };
         let mut writer = BufWriter::new(file);
         write(&mut writer)?;
         let place = || -> io::Result<()> {
-            writer.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
+            writer
+                .into_inner()
+                .map_err(io::IntoInnerError::into_error)?
+                .sync_all()?;
             fs::rename(&self.temporary, &self.path)
         };
-        place().map_err(|source| FilmFileError::Write { path: self.path.clone(), source })
+        place().map_err(|source| FilmFileError::Write {
+            path: self.path.clone(),
+            source,
+        })
     }
 }
 

@@ -15,7 +15,8 @@ use crate::sampling::StreamKey;
 use crate::scene::{Emitter, Scene};
 use crate::spectrum::{Colour, Rgb, Spectral};
 use crate::transport::{
-    Accelerator, AcceleratorOptions, DirectLight, Engine, TileJob, TraceStatistics, Tracer, TransportSettings,
+    Accelerator, AcceleratorOptions, DirectLight, Engine, TileJob, TraceStatistics, Tracer,
+    TransportSettings,
 };
 use crate::walk::FixedDepth;
 
@@ -32,10 +33,15 @@ pub enum RenderError {
     #[error("the rendering threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
     /// Paths that never end.
-    #[error("the strategy `{}` never ends a path, so it needs a maximal depth (`--max-depth` or `max_depth` of the integrator)", FixedDepth::NAME)]
+    #[error(
+        "the strategy `{}` never ends a path, so it needs a maximal depth (`--max-depth` or `max_depth` of the integrator)",
+        FixedDepth::NAME
+    )]
     EndlessPaths,
     /// Lights that can only be found by next-event estimation, which is off.
-    #[error("the scene has a point light, which paths cannot hit: it needs next-event estimation (`--direct next-event`)")]
+    #[error(
+        "the scene has a point light, which paths cannot hit: it needs next-event estimation (`--direct next-event`)"
+    )]
     UnreachableLight,
 }
 
@@ -88,7 +94,10 @@ impl Render {
     /// # Errors
     /// Settings that do not fit the scene, and an acceleration structure that cannot be built.
     pub fn new(scene: Arc<Scene>, mut settings: Settings) -> Result<Self, RenderError> {
-        let max_depth = settings.max_depth.map(NonZeroU32::get).or(scene.integrator.max_depth);
+        let max_depth = settings
+            .max_depth
+            .map(NonZeroU32::get)
+            .or(scene.integrator.max_depth);
         if max_depth.is_none() && settings.strategy.name() == FixedDepth::NAME {
             return Err(RenderError::EndlessPaths);
         }
@@ -97,11 +106,14 @@ impl Render {
             return Err(RenderError::UnreachableLight);
         }
         let start = Instant::now();
-        let accelerator = Accelerator::new(&scene, AcceleratorOptions {
-            threads: settings.threads,
-            quality: settings.build_quality,
-            robust: settings.robust,
-        })?;
+        let accelerator = Accelerator::new(
+            &scene,
+            AcceleratorOptions {
+                threads: settings.threads,
+                quality: settings.build_quality,
+                robust: settings.robust,
+            },
+        )?;
         let build_time = start.elapsed();
         let transport = TransportSettings {
             max_depth,
@@ -109,9 +121,16 @@ impl Render {
             hide_emitters: scene.integrator.hide_emitters,
         };
         let strategy = std::mem::replace(&mut settings.strategy, Box::new(FixedDepth));
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads.get()).build()?;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(settings.threads.get())
+            .build()?;
         let engine = Engine::new(scene, accelerator, transport, strategy);
-        Ok(Self { engine, settings, pool, build_time })
+        Ok(Self {
+            engine,
+            settings,
+            pool,
+            build_time,
+        })
     }
 
     /// The engine, with the scene and the strategy.
@@ -144,18 +163,27 @@ impl Render {
         let mut film = Film::new(self.engine.scene().film.crop.size);
         let watch = Watch::new(self.settings.budget, film.size().pixels(), stop, observer);
         let schedule = Schedule::new(self.settings.budget);
-        let tracers: Vec<Mutex<Tracer<C>>> =
-            (0..self.settings.threads.get()).map(|_| Mutex::default()).collect();
+        let tracers: Vec<Mutex<Tracer<C>>> = (0..self.settings.threads.get())
+            .map(|_| Mutex::default())
+            .collect();
         let seed = self.settings.seed;
         self.pool.install(|| {
             for (pass, samples) in (0..).map_while(|pass| Some((pass, schedule.samples(pass)?))) {
                 // Passes follow each other, so that every pixel adds up its passes in the same order.
-                film.tiles_mut().par_iter_mut().with_max_len(1).enumerate().for_each(|(index, tile)| {
-                    let tracer = &tracers[rayon::current_thread_index().unwrap_or(0)];
-                    let key = StreamKey { seed, tile: index as u32, pass };
-                    let job = TileJob { key, samples };
-                    watch.trace(&self.engine, &job, tile, &mut unpoisoned(tracer));
-                });
+                film.tiles_mut()
+                    .par_iter_mut()
+                    .with_max_len(1)
+                    .enumerate()
+                    .for_each(|(index, tile)| {
+                        let tracer = &tracers[rayon::current_thread_index().unwrap_or(0)];
+                        let key = StreamKey {
+                            seed,
+                            tile: index as u32,
+                            pass,
+                        };
+                        let job = TileJob { key, samples };
+                        watch.trace(&self.engine, &job, tile, &mut unpoisoned(tracer));
+                    });
                 if watch.ended().is_some() {
                     break;
                 }
@@ -205,7 +233,13 @@ impl<'a> Watch<'a> {
     }
 
     /// Traces a batch, unless it is time to stop.
-    fn trace<C: Colour>(&self, engine: &Engine, job: &TileJob, tile: &mut FilmTile, tracer: &mut Tracer<C>) {
+    fn trace<C: Colour>(
+        &self,
+        engine: &Engine,
+        job: &TileJob,
+        tile: &mut FilmTile,
+        tracer: &mut Tracer<C>,
+    ) {
         let paths = tile.pixels.len() as u64 * u64::from(job.samples);
         if self.should_stop(paths) {
             return;
@@ -213,7 +247,8 @@ impl<'a> Watch<'a> {
         let _flushed = flush_denormals_to_zero();
         let start = Instant::now();
         tracer.trace(engine, job, tile);
-        self.path_cost.store(start.elapsed().as_nanos() as u64 / paths, Ordering::Relaxed);
+        self.path_cost
+            .store(start.elapsed().as_nanos() as u64 / paths, Ordering::Relaxed);
         let total = {
             let mut total = unpoisoned(&self.statistics);
             *total += tracer.take_statistics();
@@ -227,10 +262,13 @@ impl<'a> Watch<'a> {
     fn should_stop(&self, paths: u64) -> bool {
         let mut ended = unpoisoned(&self.ended);
         if ended.is_none() {
-            let expected = Duration::from_nanos(self.path_cost.load(Ordering::Relaxed).saturating_mul(paths));
+            let expected =
+                Duration::from_nanos(self.path_cost.load(Ordering::Relaxed).saturating_mul(paths));
             *ended = match self.budget {
                 _ if self.stop.is_raised() => Some(Ended::Interrupted),
-                Budget::Time(limit) if self.start.elapsed() + expected / 2 >= limit => Some(Ended::OutOfTime),
+                Budget::Time(limit) if self.start.elapsed() + expected / 2 >= limit => {
+                    Some(Ended::OutOfTime)
+                }
                 Budget::Time(_) | Budget::SamplesPerPixel(_) => None,
             };
         }
@@ -239,16 +277,26 @@ impl<'a> Watch<'a> {
 
     fn observe(&self, total: &TraceStatistics) {
         let elapsed = self.start.elapsed();
-        let (now, last) = (elapsed.as_nanos() as u64, self.last_observation.load(Ordering::Relaxed));
+        let (now, last) = (
+            elapsed.as_nanos() as u64,
+            self.last_observation.load(Ordering::Relaxed),
+        );
         let due = now.saturating_sub(last) >= OBSERVATION_INTERVAL.as_nanos() as u64;
         // Of several threads that find it due, the one that sets the time tells the observer.
-        if !due || self.last_observation.compare_exchange(last, now, Ordering::Relaxed, Ordering::Relaxed).is_err() {
+        if !due
+            || self
+                .last_observation
+                .compare_exchange(last, now, Ordering::Relaxed, Ordering::Relaxed)
+                .is_err()
+        {
             return;
         }
         let samples_per_pixel = total.camera_paths as f64 / self.pixels as f64;
         let share = match self.budget {
             Budget::SamplesPerPixel(samples) => samples_per_pixel / f64::from(samples.get()),
-            Budget::Time(limit) => elapsed.as_secs_f64() / limit.as_secs_f64().max(f64::MIN_POSITIVE),
+            Budget::Time(limit) => {
+                elapsed.as_secs_f64() / limit.as_secs_f64().max(f64::MIN_POSITIVE)
+            }
         };
         self.observer.progress(&Progress {
             share: share.clamp(0.0, 1.0),

@@ -10,11 +10,18 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
     let strategy = render.engine().strategy();
     let statistics = &outcome.statistics;
     let film = &outcome.film;
-    let (fewest, most) = film
-        .pixels()
-        .fold((u64::MAX, 0), |(low, high), pixel| (low.min(pixel.samples), high.max(pixel.samples)));
-    let samples = if fewest == most { format!("{most}") } else { format!("{fewest} to {most}") };
-    let max_depth = settings.max_depth.map(|depth| depth.get()).or(scene.integrator.max_depth);
+    let (fewest, most) = film.pixels().fold((u64::MAX, 0), |(low, high), pixel| {
+        (low.min(pixel.samples), high.max(pixel.samples))
+    });
+    let samples = if fewest == most {
+        format!("{most}")
+    } else {
+        format!("{fewest} to {most}")
+    };
+    let max_depth = settings
+        .max_depth
+        .map(|depth| depth.get())
+        .or(scene.integrator.max_depth);
     let seconds = outcome.duration.as_secs_f64();
     let mut list = Vec::new();
     let mut add = |name: &str, value: String| list.push((format!("cohort:{name}"), value));
@@ -27,22 +34,37 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
         add(&format!("strategy.{name}"), value);
     }
     add("colour", settings.colour.name().into());
-    add("direct-light", match settings.direct_light {
-        DirectLight::NextEvent => "next-event".into(),
-        DirectLight::Off => "off".into(),
-    });
-    add("max-depth", max_depth.map_or("unlimited".into(), |depth| depth.to_string()));
+    add(
+        "direct-light",
+        match settings.direct_light {
+            DirectLight::NextEvent => "next-event".into(),
+            DirectLight::Off => "off".into(),
+        },
+    );
+    add(
+        "max-depth",
+        max_depth.map_or("unlimited".into(), |depth| depth.to_string()),
+    );
     add("robust", settings.robust.to_string());
-    add("build-quality", format!("{:?}", settings.build_quality).to_lowercase());
+    add(
+        "build-quality",
+        format!("{:?}", settings.build_quality).to_lowercase(),
+    );
     add("seed", settings.seed.to_string());
     add("threads", settings.threads.to_string());
     add("samples", samples);
     add("ended", outcome.ended.name().into());
     add("seconds", format!("{seconds:.3}"));
-    add("build-seconds", format!("{:.3}", render.build_time().as_secs_f64()));
+    add(
+        "build-seconds",
+        format!("{:.3}", render.build_time().as_secs_f64()),
+    );
     add("rays", statistics.all_rays().to_string());
     add("camera-paths", statistics.camera_paths.to_string());
-    add("intersection-share", format!("{:.3}", statistics.intersection_share()));
+    add(
+        "intersection-share",
+        format!("{:.3}", statistics.intersection_share()),
+    );
     add("longest-path", statistics.deepest.to_string());
     let dropped = statistics.dropped;
     add("dropped.nan", dropped.nan.to_string());
@@ -56,6 +78,9 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
 /// The processor's name, or the architecture where the system does not tell.
 fn cpu_name() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
-    name.map_or(std::env::consts::ARCH, |(_, name)| name.trim()).to_owned()
+    let name = info
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    name.map_or(std::env::consts::ARCH, |(_, name)| name.trim())
+        .to_owned()
 }

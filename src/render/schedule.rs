@@ -46,7 +46,10 @@ mod tests {
 
     fn passes(budget: Budget, most: usize) -> Vec<u32> {
         let schedule = Schedule::new(budget);
-        (0..).map_while(|pass| schedule.samples(pass)).take(most).collect()
+        (0..)
+            .map_while(|pass| schedule.samples(pass))
+            .take(most)
+            .collect()
     }
 
     #[test]
@@ -61,6 +64,9 @@ mod tests {
     fn a_time_budget_starts_small_and_never_ends() {
         let got = passes(Budget::Time(Duration::from_secs(1)), 8);
         assert_eq!(got, [1, 1, 2, 4, 8, 16, 16, 16]);
-        assert_eq!(Schedule::new(Budget::Time(Duration::ZERO)).samples(u32::MAX), Some(16));
+        assert_eq!(
+            Schedule::new(Budget::Time(Duration::ZERO)).samples(u32::MAX),
+            Some(16)
+        );
     }
 }

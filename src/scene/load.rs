@@ -43,8 +43,15 @@ impl Scene {
         Self::load_from(&source, format!("built-in {NAME}"), options)
     }
 
-    fn load_from(source: &SceneSource, name: String, options: &LoadOptions) -> Result<Self, SceneError> {
-        let models = options.models.as_ref().map(|path| ("models".to_owned(), path.display().to_string()));
+    fn load_from(
+        source: &SceneSource,
+        name: String,
+        options: &LoadOptions,
+    ) -> Result<Self, SceneError> {
+        let models = options
+            .models
+            .as_ref()
+            .map(|path| ("models".to_owned(), path.display().to_string()));
         let document = xml::parse(source, &options.definitions, models.as_slice())?;
         Loader::new(&document).scene(name)
     }
@@ -80,9 +87,15 @@ impl<'d> Loader<'d> {
             None => PathIntegrator::default(),
         };
         let Some(sensor) = root.child(Class::Sensor)? else {
-            return Err(root.error("the scene has no sensor; it needs one, such as <sensor type=\"perspective\">"));
+            return Err(root.error(
+                "the scene has no sensor; it needs one, such as <sensor type=\"perspective\">",
+            ));
         };
-        let sensors::Sensor { camera, film, sampler } = sensors::load(&sensor.object)?;
+        let sensors::Sensor {
+            camera,
+            film,
+            sampler,
+        } = sensors::load(&sensor.object)?;
         for child in root.children(Class::Bsdf) {
             self.material(&child.object)?;
         }
@@ -112,7 +125,9 @@ impl<'d> Loader<'d> {
     fn add_surrounding(&mut self, object: &Object, emitter: Emitter) -> Result<(), SceneError> {
         let surrounds = |emitter: &Emitter| matches!(emitter, Emitter::Constant(_));
         if surrounds(&emitter) && self.emitters.iter().any(surrounds) {
-            return Err(object.error("the scene already has an emitter that surrounds it; it can have one"));
+            return Err(
+                object.error("the scene already has an emitter that surrounds it; it can have one")
+            );
         }
         self.emitters.push(emitter);
         Ok(())
@@ -162,7 +177,11 @@ impl<'d> Loader<'d> {
             None => None,
         };
         object.finish()?;
-        self.shapes.push(Shape { geometry, material, emitter });
+        self.shapes.push(Shape {
+            geometry,
+            material,
+            emitter,
+        });
         Ok(())
     }
 }
@@ -176,16 +195,29 @@ impl PathIntegrator {
         let max_depth = match object.integer_or("max_depth", -1)? {
             -1 => None,
             depth => Some(u32::try_from(depth).map_err(|_| {
-                object.parameter_error("max_depth", format!("`max_depth` is {depth}; it must be -1 (no limit) or from 0 on"))
+                object.parameter_error(
+                    "max_depth",
+                    format!("`max_depth` is {depth}; it must be -1 (no limit) or from 0 on"),
+                )
             })?),
         };
         let rr_depth = object.integer_or("rr_depth", i64::from(default.roulette_depth))?;
-        let roulette_depth = u32::try_from(rr_depth).ok().filter(|&depth| depth > 0).ok_or_else(|| {
-            object.parameter_error("rr_depth", format!("`rr_depth` is {rr_depth}; it must be from 1 on"))
-        })?;
+        let roulette_depth = u32::try_from(rr_depth)
+            .ok()
+            .filter(|&depth| depth > 0)
+            .ok_or_else(|| {
+                object.parameter_error(
+                    "rr_depth",
+                    format!("`rr_depth` is {rr_depth}; it must be from 1 on"),
+                )
+            })?;
         let hide_emitters = object.boolean_or("hide_emitters", default.hide_emitters)?;
         object.finish()?;
-        Ok(Self { max_depth, roulette_depth, hide_emitters })
+        Ok(Self {
+            max_depth,
+            roulette_depth,
+            hide_emitters,
+        })
     }
 }
 
@@ -196,9 +228,18 @@ impl IndependentSampler {
         }
         let default = Self::default();
         let count = object.integer_or("sample_count", i64::from(default.sample_count))?;
-        let sample_count = u32::try_from(count).ok().filter(|&count| count > 0).ok_or_else(|| {
-            object.parameter_error("sample_count", format!("`sample_count` is {count}; it must be from 1 to {}", u32::MAX))
-        })?;
+        let sample_count = u32::try_from(count)
+            .ok()
+            .filter(|&count| count > 0)
+            .ok_or_else(|| {
+                object.parameter_error(
+                    "sample_count",
+                    format!(
+                        "`sample_count` is {count}; it must be from 1 to {}",
+                        u32::MAX
+                    ),
+                )
+            })?;
         let seed = object.integer_or("seed", 0)? as u64;
         object.finish()?;
         Ok(Self { sample_count, seed })

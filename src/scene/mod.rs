@@ -15,12 +15,12 @@ pub use emitters::{AreaLight, ConstantLight, Emitter, LightSample, PointLight};
 pub use error::{Location, SceneError};
 pub use load::LoadOptions;
 pub use sensors::{
-    CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis, ImageSize, Perspective,
-    PixelFormat, Projection, ReconstructionFilter,
+    CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis,
+    ImageSize, Perspective, PixelFormat, Projection, ReconstructionFilter,
 };
 pub use shapes::{
-    Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape, ShapeSample, Sphere, SurfacePoint,
-    TriangleAttributes, Triangles,
+    Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape, ShapeSample, Sphere,
+    SurfacePoint, TriangleAttributes, Triangles,
 };
 
 /// A shape of a scene.
@@ -82,7 +82,11 @@ pub struct PathIntegrator {
 
 impl Default for PathIntegrator {
     fn default() -> Self {
-        Self { max_depth: None, roulette_depth: 5, hide_emitters: false }
+        Self {
+            max_depth: None,
+            roulette_depth: 5,
+            hide_emitters: false,
+        }
     }
 }
 
@@ -97,6 +101,9 @@ pub struct IndependentSampler {
 
 impl Default for IndependentSampler {
     fn default() -> Self {
-        Self { sample_count: 4, seed: 0 }
+        Self {
+            sample_count: 4,
+            seed: 0,
+        }
     }
 }

@@ -19,7 +19,9 @@ pub(super) fn spectrum(
     name: &'static str,
     quantity: Quantity,
 ) -> Result<Option<SpectralCurve>, SceneError> {
-    let Some(property) = object.spectrum(name)? else { return Ok(None) };
+    let Some(property) = object.spectrum(name)? else {
+        return Ok(None);
+    };
     let curve = match property {
         SpectrumProperty::Texture(texture) => return Err(texture.unsupported(&[])),
         SpectrumProperty::Constant(value) => constant(value as f32, quantity),
@@ -31,7 +33,10 @@ pub(super) fn spectrum(
             }
         }
         SpectrumProperty::List(list) => {
-            let list: Vec<(f32, f32)> = list.iter().map(|&[nm, value]| (nm as f32, value as f32)).collect();
+            let list: Vec<(f32, f32)> = list
+                .iter()
+                .map(|&[nm, value]| (nm as f32, value as f32))
+                .collect();
             match quantity {
                 Quantity::Reflectance => SpectralCurve::tabulated_reflectance(&list),
                 Quantity::Emission => SpectralCurve::tabulated_emission(&list),
@@ -59,7 +64,8 @@ pub(super) fn spectrum_or(
 ) -> Result<SpectralCurve, SceneError> {
     match spectrum(object, name, quantity)? {
         Some(curve) => Ok(curve),
-        None => constant(default, quantity)
-            .map_err(|error| object.error(format!("`{name}`: {error}"))),
+        None => {
+            constant(default, quantity).map_err(|error| object.error(format!("`{name}`: {error}")))
+        }
     }
 }

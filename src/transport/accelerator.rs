@@ -5,8 +5,8 @@ use std::num::NonZeroUsize;
 use glam::Vec3;
 
 use crate::embree::{
-    Bounds, BuildOptions, BuildQuality, Device, EmbreeError, Scene as EmbreeScene, SceneBuilder, TriangleMesh,
-    UserGeometry, UserHit, UserRay,
+    Bounds, BuildOptions, BuildQuality, Device, EmbreeError, Scene as EmbreeScene, SceneBuilder,
+    TriangleMesh, UserGeometry, UserHit, UserRay,
 };
 use crate::scene::{Cylinder, Disk, Geometry, Scene, Shape, Sphere};
 
@@ -33,7 +33,11 @@ impl Accelerator {
     /// What the intersection layer refuses, above all for want of memory.
     pub fn new(scene: &Scene, options: AcceleratorOptions) -> Result<Self, EmbreeError> {
         let device = Device::new(options.threads)?;
-        let build = BuildOptions { quality: options.quality, robust: options.robust, compact: false };
+        let build = BuildOptions {
+            quality: options.quality,
+            robust: options.robust,
+            compact: false,
+        };
         let mut builder = SceneBuilder::new(&device, build);
         // Geometries are numbered in the order of adding: their numbers are the shapes' own.
         for shape in &scene.shapes {
@@ -47,7 +51,9 @@ impl Accelerator {
                 Geometry::Cylinder(cylinder) => builder.add_user(*cylinder),
             };
         }
-        Ok(Self { scene: builder.build()? })
+        Ok(Self {
+            scene: builder.build()?,
+        })
     }
 
     /// The intersection layer's scene.
@@ -67,7 +73,10 @@ fn bounds_about(center: Vec3, half_extent: Vec3) -> Bounds {
     // Rounding must not cut the shape.
     let slack = (center.abs() + half_extent) * (4.0 * f32::EPSILON);
     let half = half_extent + slack;
-    Bounds { min: (center - half).into(), max: (center + half).into() }
+    Bounds {
+        min: (center - half).into(),
+        max: (center + half).into(),
+    }
 }
 
 impl UserGeometry for Sphere {
@@ -84,7 +93,12 @@ impl UserGeometry for Sphere {
         let t = Sphere::intersect(self, origin, direction, ray.tnear, ray.tfar)?;
         let point = origin.as_dvec3() + direction.as_dvec3() * f64::from(t);
         let normal = (point - self.center.as_dvec3()).as_vec3();
-        Some(UserHit { t, u: 0.0, v: 0.0, normal: normal.into() })
+        Some(UserHit {
+            t,
+            u: 0.0,
+            v: 0.0,
+            normal: normal.into(),
+        })
     }
 }
 
@@ -102,7 +116,12 @@ impl UserGeometry for Disk {
     fn intersect(&self, _primitive: u32, ray: &UserRay) -> Option<UserHit> {
         let (origin, direction) = (ray.origin.into(), ray.direction.into());
         let hit = Disk::intersect(self, origin, direction, ray.tnear, ray.tfar)?;
-        Some(UserHit { t: hit.t, u: hit.u, v: hit.v, normal: self.normal().into() })
+        Some(UserHit {
+            t: hit.t,
+            u: hit.u,
+            v: hit.v,
+            normal: self.normal().into(),
+        })
     }
 }
 
@@ -119,6 +138,11 @@ impl UserGeometry for Cylinder {
     fn intersect(&self, _primitive: u32, ray: &UserRay) -> Option<UserHit> {
         let (origin, direction) = (ray.origin.into(), ray.direction.into());
         let hit = Cylinder::intersect(self, origin, direction, ray.tnear, ray.tfar)?;
-        Some(UserHit { t: hit.t, u: hit.along, v: 0.0, normal: hit.radial.into() })
+        Some(UserHit {
+            t: hit.t,
+            u: hit.along,
+            v: 0.0,
+            normal: hit.radial.into(),
+        })
     }
 }

@@ -71,7 +71,11 @@ pub(super) struct Particles {
 
 impl<C: Colour> CameraPaths<C> {
     pub fn new() -> Self {
-        Self { wavelengths: Vec::new(), radiance: Vec::new(), filter_weight: Vec::new() }
+        Self {
+            wavelengths: Vec::new(),
+            radiance: Vec::new(),
+            filter_weight: Vec::new(),
+        }
     }
 
     pub fn clear(&mut self) {
@@ -143,7 +147,11 @@ impl<C: Colour> Vertices<C> {
 
 impl<C: Colour> ShadowRays<C> {
     pub fn new() -> Self {
-        Self { path: Vec::new(), contribution: Vec::new(), rays: Rays::default() }
+        Self {
+            path: Vec::new(),
+            contribution: Vec::new(),
+            rays: Rays::default(),
+        }
     }
 }
 

@@ -26,7 +26,11 @@ pub(super) fn start<C: Colour>(
         let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
         for _ in 0..job.samples {
             let sample = engine.filter.sample(x, y, random.uniform_2d());
-            let u = if C::RANDOM_NUMBERS > 0 { random.uniform() } else { 0.0 };
+            let u = if C::RANDOM_NUMBERS > 0 {
+                random.uniform()
+            } else {
+                0.0
+            };
             let index = paths.radiance.len();
             paths.wavelengths.push(C::sample_wavelengths(u));
             paths.radiance.push(C::Spectrum::ZERO);

@@ -50,7 +50,13 @@ pub(super) fn sample_lights<C: Colour>(
         }
         let origin = leave_surface(position, vertices.geometric_normal[i], light.direction);
         let (direction, length) = towards(position, origin, light.direction, light.distance);
-        shadow.rays.set(shadow.path.len(), origin.into(), direction.into(), 0.0, length * SHADOW_END);
+        shadow.rays.set(
+            shadow.path.len(),
+            origin.into(),
+            direction.into(),
+            0.0,
+            length * SHADOW_END,
+        );
         shadow.path.push(path);
         shadow.contribution.push(contribution);
     }
@@ -65,7 +71,11 @@ fn towards(position: Vec3, origin: Vec3, direction: Vec3, distance: f32) -> (Vec
     }
     let offset = position + direction * distance - origin;
     let length = offset.length();
-    if length > 0.0 { (offset / length, length) } else { (direction, 0.0) }
+    if length > 0.0 {
+        (offset / length, length)
+    } else {
+        (direction, 0.0)
+    }
 }
 
 /// Adds what the unoccluded shadow rays carry.

@@ -43,7 +43,9 @@ pub(super) fn arrive<C: Colour>(
             v,
             normal: segments.hits.normal(i).into(),
         });
-        if let Some(Emitter::Area(light)) = shape.emitter.map(|id| &engine.scene.emitters[id.index()]) {
+        if let Some(Emitter::Area(light)) =
+            shape.emitter.map(|id| &engine.scene.emitters[id.index()])
+        {
             let radiance = light.radiance::<C>(&point, -direction, wavelengths);
             if !radiance.is_black() {
                 let origin = Vec3::from(segments.rays.origin(i));
@@ -55,9 +57,13 @@ pub(super) fn arrive<C: Colour>(
         if !scatters {
             continue;
         }
-        let Some(side) = Side::seen_with(-direction.dot(point.shading_normal)) else { continue };
+        let Some(side) = Side::seen_with(-direction.dot(point.shading_normal)) else {
+            continue;
+        };
         let material = &engine.scene.materials[shape.material.index()];
-        let Some(bsdf) = material.bsdf::<C>(side, wavelengths) else { continue };
+        let Some(bsdf) = material.bsdf::<C>(side, wavelengths) else {
+            continue;
+        };
         let frame = Frame::about(side.facing(point.shading_normal));
         vertices.path.push(path);
         vertices.throughput.push(segments.throughput[i]);

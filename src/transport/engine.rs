@@ -76,10 +76,13 @@ impl Engine {
     /// The light that surrounds the scene, if there is one.
     #[inline]
     pub(super) fn surroundings(&self) -> Option<&ConstantLight> {
-        self.scene.emitters.iter().find_map(|emitter| match emitter {
-            Emitter::Constant(light) => Some(light),
-            Emitter::Area(_) | Emitter::Point(_) => None,
-        })
+        self.scene
+            .emitters
+            .iter()
+            .find_map(|emitter| match emitter {
+                Emitter::Constant(light) => Some(light),
+                Emitter::Area(_) | Emitter::Point(_) => None,
+            })
     }
 }
 
@@ -114,7 +117,14 @@ impl<C: Colour> Tracer<C> {
     pub fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
         let start = Instant::now();
         let mut random = RandomStream::new(job.key);
-        camera::start(engine, job, tile, &mut random, &mut self.paths, &mut self.segments);
+        camera::start(
+            engine,
+            job,
+            tile,
+            &mut random,
+            &mut self.paths,
+            &mut self.segments,
+        );
         self.follow(engine, job, &mut random);
         self.expose(engine, job, tile);
         self.statistics.camera_paths += self.paths.radiance.len() as u64;
@@ -140,8 +150,17 @@ impl<C: Colour> Tracer<C> {
                 return;
             }
             let camera_rays = depth == 0;
-            let coherence = if camera_rays { Coherence::Coherent } else { Coherence::Incoherent };
-            intersect::nearest(&engine.accelerator, coherence, &mut self.segments, &mut self.statistics);
+            let coherence = if camera_rays {
+                Coherence::Coherent
+            } else {
+                Coherence::Incoherent
+            };
+            intersect::nearest(
+                &engine.accelerator,
+                coherence,
+                &mut self.segments,
+                &mut self.statistics,
+            );
             if camera_rays && engine.settings.hide_emitters {
                 hidden_emitters::look_through(engine, &mut self.segments, &mut self.statistics);
             }
@@ -157,7 +176,13 @@ impl<C: Colour> Tracer<C> {
             self.statistics.vertices += self.vertices.len() as u64;
             self.statistics.deepest = self.statistics.deepest.max(depth + 1);
             if next_event {
-                direct::sample_lights(engine, &self.paths, &self.vertices, random, &mut self.shadow);
+                direct::sample_lights(
+                    engine,
+                    &self.paths,
+                    &self.vertices,
+                    random,
+                    &mut self.shadow,
+                );
                 intersect::occluded(&engine.accelerator, &mut self.shadow, &mut self.statistics);
                 direct::add_unoccluded(&self.shadow, &mut self.paths);
             }
@@ -170,7 +195,12 @@ impl<C: Colour> Tracer<C> {
                 random,
                 &mut self.offspring,
             );
-            scatter::scatter(&self.vertices, self.offspring.children(), random, &mut self.segments);
+            scatter::scatter(
+                &self.vertices,
+                self.offspring.children(),
+                random,
+                &mut self.segments,
+            );
         }
     }
 
@@ -210,7 +240,8 @@ impl<C: Colour> Tracer<C> {
             dropped.negative += 1;
         } else {
             let weight = f64::from(self.paths.filter_weight[path]);
-            return C::to_rgb(radiance, &self.paths.wavelengths[path]).map(|v| f64::from(v) * weight);
+            return C::to_rgb(radiance, &self.paths.wavelengths[path])
+                .map(|v| f64::from(v) * weight);
         }
         [0.0; 3]
     }

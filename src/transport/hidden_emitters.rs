@@ -17,7 +17,10 @@ pub(super) fn look_through<C: Colour>(
     statistics: &mut TraceStatistics,
 ) {
     let glows = |geometry: u32| {
-        engine.accelerator.shape(&engine.scene, geometry).is_some_and(|shape| shape.emitter.is_some())
+        engine
+            .accelerator
+            .shape(&engine.scene, geometry)
+            .is_some_and(|shape| shape.emitter.is_some())
     };
     let start = Instant::now();
     for i in 0..segments.len() {
@@ -29,14 +32,19 @@ pub(super) fn look_through<C: Colour>(
         let mut nearest = segments.rays.tfar(i);
         let through = loop {
             let mut ray = RayHit1::new(Ray1::new(origin, direction, nearest.next_up(), far));
-            engine.accelerator.scene().intersect1(&mut ray, Coherence::Incoherent);
+            engine
+                .accelerator
+                .scene()
+                .intersect1(&mut ray, Coherence::Incoherent);
             statistics.rays += 1;
             nearest = ray.ray.tfar;
             if !glows(ray.hit.geometry_id) {
                 break ray;
             }
         };
-        segments.rays.set(i, origin, direction, through.ray.tnear, through.ray.tfar);
+        segments
+            .rays
+            .set(i, origin, direction, through.ray.tnear, through.ray.tfar);
         segments.hits.set(i, &through.hit);
     }
     statistics.intersection_time += start.elapsed();

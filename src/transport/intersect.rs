@@ -16,7 +16,9 @@ pub(super) fn nearest<C: Colour>(
     statistics: &mut TraceStatistics,
 ) {
     let start = Instant::now();
-    accelerator.scene().intersect_stream(&mut segments.rays, &mut segments.hits, coherence);
+    accelerator
+        .scene()
+        .intersect_stream(&mut segments.rays, &mut segments.hits, coherence);
     statistics.intersection_time += start.elapsed();
     statistics.rays += segments.len() as u64;
 }
@@ -28,7 +30,9 @@ pub(super) fn occluded<C: Colour>(
     statistics: &mut TraceStatistics,
 ) {
     let start = Instant::now();
-    accelerator.scene().occluded_stream(&mut shadow.rays, Coherence::Incoherent);
+    accelerator
+        .scene()
+        .occluded_stream(&mut shadow.rays, Coherence::Incoherent);
     statistics.intersection_time += start.elapsed();
     statistics.shadow_rays += shadow.path.len() as u64;
 }

@@ -16,7 +16,11 @@ const INT_SCALE: f32 = 256.0;
 /// for Avoiding Self-Intersection"): it fits any scene scale.
 #[inline]
 pub(super) fn leave_surface(position: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
-    let outward = if normal.dot(direction) < 0.0 { -normal } else { normal };
+    let outward = if normal.dot(direction) < 0.0 {
+        -normal
+    } else {
+        normal
+    };
     Vec3::new(
         offset_coordinate(position.x, outward.x),
         offset_coordinate(position.y, outward.y),

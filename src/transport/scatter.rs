@@ -24,7 +24,13 @@ pub(super) fn scatter<C: Colour>(
         let direction = vertices.frame[parent].to_world(sample.incident);
         let normal = vertices.geometric_normal[parent];
         let origin = leave_surface(vertices.position[parent], normal, direction);
-        segments.rays.set(segments.len(), origin.into(), direction.into(), 0.0, f32::INFINITY);
+        segments.rays.set(
+            segments.len(),
+            origin.into(),
+            direction.into(),
+            0.0,
+            f32::INFINITY,
+        );
         segments.push(vertices.path[parent], throughput, sample.pdf);
     }
     let count = segments.len();

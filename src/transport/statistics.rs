@@ -50,7 +50,11 @@ impl TraceStatistics {
     /// The share of the engine's time that was spent inside the intersection layer, in [0, 1].
     pub fn intersection_share(&self) -> f64 {
         let total = self.total_time.as_secs_f64();
-        if total > 0.0 { self.intersection_time.as_secs_f64() / total } else { 0.0 }
+        if total > 0.0 {
+            self.intersection_time.as_secs_f64() / total
+        } else {
+            0.0
+        }
     }
 }
 

@@ -22,15 +22,26 @@ pub(super) fn decide<C: Colour>(
         Scalar::Maximum => spectrum.max_component(),
     };
     particles.clear();
-    particles.importance.extend(vertices.throughput.iter().map(|&throughput| scalar(throughput)));
-    particles.albedo.extend(vertices.bsdf.iter().map(|bsdf| scalar(bsdf.albedo())));
-    particles.shininess.extend(vertices.bsdf.iter().map(|bsdf| bsdf.shininess()));
+    particles.importance.extend(
+        vertices
+            .throughput
+            .iter()
+            .map(|&throughput| scalar(throughput)),
+    );
+    particles
+        .albedo
+        .extend(vertices.bsdf.iter().map(|bsdf| scalar(bsdf.albedo())));
+    particles
+        .shininess
+        .extend(vertices.bsdf.iter().map(|bsdf| bsdf.shininess()));
     let group_of = |path: u32| match strategy.scope() {
         Scope::Particle | Scope::CameraPath => path,
         Scope::Pixel => path / samples,
         Scope::Tile => 0,
     };
-    particles.group.extend(vertices.path.iter().map(|&path| group_of(path)));
+    particles
+        .group
+        .extend(vertices.path.iter().map(|&path| group_of(path)));
     let population = Population {
         importance: &particles.importance,
         albedo: &particles.albedo,

@@ -27,21 +27,29 @@ pub struct DiffuseMaterial {
 impl Default for DiffuseMaterial {
     fn default() -> Self {
         let reflectance = SpectralCurve::constant_reflectance(DEFAULT_REFLECTANCE);
-        Self { reflectance: reflectance.unwrap_or(SpectralCurve::BLACK) }
+        Self {
+            reflectance: reflectance.unwrap_or(SpectralCurve::BLACK),
+        }
     }
 }
 
 impl DiffuseMaterial {
     pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
-        let reflectance =
-            spectrum_or(object, "reflectance", Quantity::Reflectance, DEFAULT_REFLECTANCE)?;
+        let reflectance = spectrum_or(
+            object,
+            "reflectance",
+            Quantity::Reflectance,
+            DEFAULT_REFLECTANCE,
+        )?;
         object.finish()?;
         Ok(Self { reflectance })
     }
 
     #[inline]
     pub(super) fn at<C: Colour>(&self, wavelengths: &C::Wavelengths) -> Diffuse<C::Spectrum> {
-        Diffuse { reflectance: C::evaluate(&self.reflectance, wavelengths) }
+        Diffuse {
+            reflectance: C::evaluate(&self.reflectance, wavelengths),
+        }
     }
 }
 
@@ -65,7 +73,10 @@ impl<S: SpectrumArithmetic> Diffuse<S> {
     #[inline]
     pub(super) fn evaluate(&self, outgoing: Vec3, incident: Vec3) -> BsdfValue<S> {
         if outgoing.z <= 0.0 || incident.z <= 0.0 {
-            return BsdfValue { value: S::ZERO, pdf: SolidAnglePdf(0.0) };
+            return BsdfValue {
+                value: S::ZERO,
+                pdf: SolidAnglePdf(0.0),
+            };
         }
         BsdfValue {
             value: self.reflectance * (incident.z * FRAC_1_PI),

@@ -33,7 +33,10 @@ pub struct Material {
 impl Default for Material {
     /// What a shape without a bsdf is made of.
     fn default() -> Self {
-        Self { front: Model::Diffuse(DiffuseMaterial::default()), back: None }
+        Self {
+            front: Model::Diffuse(DiffuseMaterial::default()),
+            back: None,
+        }
     }
 }
 
@@ -41,7 +44,10 @@ impl Default for Material {
 pub(super) fn load(object: &Object) -> Result<Material, SceneError> {
     match object.plugin.as_str() {
         "twosided" => twosided::load(object),
-        _ => Ok(Material { front: load_model(object)?, back: None }),
+        _ => Ok(Material {
+            front: load_model(object)?,
+            back: None,
+        }),
     }
 }
 

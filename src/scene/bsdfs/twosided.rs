@@ -13,8 +13,16 @@ pub(super) fn load(object: &Object) -> Result<Material, SceneError> {
         _ => return Err(object.error("a `twosided` contains one or two bsdfs")),
     };
     object.finish()?;
-    if let Some(nested) = [front, back].into_iter().find(|child| child.object.plugin == "twosided") {
-        return Err(nested.object.error("a `twosided` cannot contain another one"));
+    if let Some(nested) = [front, back]
+        .into_iter()
+        .find(|child| child.object.plugin == "twosided")
+    {
+        return Err(nested
+            .object
+            .error("a `twosided` cannot contain another one"));
     }
-    Ok(Material { front: load_model(&front.object)?, back: Some(load_model(&back.object)?) })
+    Ok(Material {
+        front: load_model(&front.object)?,
+        back: Some(load_model(&back.object)?),
+    })
 }

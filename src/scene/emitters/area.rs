@@ -7,12 +7,12 @@
 use glam::Vec3;
 
 use super::LightSample;
+use crate::sampling::SolidAnglePdf;
 use crate::scene::error::SceneError;
+use crate::scene::shapes::SurfacePoint;
 use crate::scene::spectra::{Quantity, spectrum};
 use crate::scene::xml::Object;
-use crate::scene::shapes::SurfacePoint;
 use crate::scene::{Shape, ShapeId};
-use crate::sampling::SolidAnglePdf;
 use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
 
 /// A shape that glows.

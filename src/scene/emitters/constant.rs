@@ -5,10 +5,10 @@
 //! | `radiance` | spectrum | incident radiance in W/(m^2 sr nm), or in linear sRGB | 1 |
 
 use super::LightSample;
+use crate::sampling::{SolidAnglePdf, warp};
 use crate::scene::error::SceneError;
 use crate::scene::spectra::{Quantity, spectrum_or};
 use crate::scene::xml::Object;
-use crate::sampling::{SolidAnglePdf, warp};
 use crate::spectrum::{Colour, SpectralCurve};
 
 /// Uniform surroundings.

@@ -36,7 +36,10 @@ impl PointLight {
             (None, None) => DVec3::ZERO,
         };
         object.finish()?;
-        Ok(Self { position: position.as_vec3(), intensity })
+        Ok(Self {
+            position: position.as_vec3(),
+            intensity,
+        })
     }
 
     #[inline]

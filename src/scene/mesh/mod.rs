@@ -1,9 +1,16 @@
 //! Triangle meshes as files hold them and as generators make them.
 
+mod check;
 mod error;
 pub mod knot;
+mod normals;
+pub mod obj;
+pub mod ply;
+mod write;
 
 pub use error::{MeshError, MeshProblem};
+pub use normals::smooth_normals;
+pub use write::{write_ply, write_ply_to};
 
 /// A triangle mesh in its own space.
 ///
@@ -20,3 +27,6 @@ pub struct MeshData {
     /// Vertex indices of the triangles, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
 }
+
+#[cfg(test)]
+mod tests;

@@ -96,7 +96,10 @@ pub struct FilmDescription {
 impl Default for FilmDescription {
     /// The film of a sensor that states none.
     fn default() -> Self {
-        let size = ImageSize { width: 768, height: 576 };
+        let size = ImageSize {
+            width: 768,
+            height: 576,
+        };
         Self {
             size,
             crop: CropWindow { x: 0, y: 0, size },
@@ -114,11 +117,23 @@ impl FilmDescription {
             return Err(object.unsupported(&["hdrfilm"]));
         }
         let refuse = |error: FilmError| object.error(error.to_string());
-        let size = (object.integer_or("width", 768)?, object.integer_or("height", 576)?);
-        let offset = (object.integer_or("crop_offset_x", 0)?, object.integer_or("crop_offset_y", 0)?);
-        let crop = (object.integer("crop_width")?, object.integer("crop_height")?);
+        let size = (
+            object.integer_or("width", 768)?,
+            object.integer_or("height", 576)?,
+        );
+        let offset = (
+            object.integer_or("crop_offset_x", 0)?,
+            object.integer_or("crop_offset_y", 0)?,
+        );
+        let crop = (
+            object.integer("crop_width")?,
+            object.integer("crop_height")?,
+        );
         let mut film = Self::new(size.0, size.1).map_err(refuse)?;
-        let crop = (crop.0.unwrap_or(size.0 - offset.0), crop.1.unwrap_or(size.1 - offset.1));
+        let crop = (
+            crop.0.unwrap_or(size.0 - offset.0),
+            crop.1.unwrap_or(size.1 - offset.1),
+        );
         film = film.cropped(offset, crop).map_err(refuse)?;
         film.filter = match object.child(Class::ReconstructionFilter)? {
             Some(child) => ReconstructionFilter::load(&child.object)?,
@@ -129,7 +144,8 @@ impl FilmDescription {
             "luminance" => PixelFormat::Luminance,
             _ => PixelFormat::Rgb,
         };
-        film.half_precision = choice(object, "component_format", &["float32", "float16"])? == "float16";
+        film.half_precision =
+            choice(object, "component_format", &["float32", "float16"])? == "float16";
         choice(object, "file_format", &["openexr", "exr"])?;
         object.finish()?;
         Ok(film)
@@ -138,15 +154,26 @@ impl FilmDescription {
     /// The same film in another size, uncropped.
     pub fn resized(&self, width: i64, height: i64) -> Result<Self, FilmError> {
         let sized = Self::new(width, height)?;
-        Ok(Self { size: sized.size, crop: sized.crop, ..self.clone() })
+        Ok(Self {
+            size: sized.size,
+            crop: sized.crop,
+            ..self.clone()
+        })
     }
     /// An uncropped film of this size with the box filter.
     pub fn new(width: i64, height: i64) -> Result<Self, FilmError> {
-        let side = |n: i64| u32::try_from(n).ok().filter(|n| (1..=ImageSize::MAX_SIDE).contains(n));
+        let side = |n: i64| {
+            u32::try_from(n)
+                .ok()
+                .filter(|n| (1..=ImageSize::MAX_SIDE).contains(n))
+        };
         let (Some(w), Some(h)) = (side(width), side(height)) else {
             return Err(FilmError::Size { width, height });
         };
-        let size = ImageSize { width: w, height: h };
+        let size = ImageSize {
+            width: w,
+            height: h,
+        };
         Ok(Self {
             size,
             crop: CropWindow { x: 0, y: 0, size },
@@ -169,7 +196,10 @@ impl FilmDescription {
         self.crop = CropWindow {
             x: offset.0 as u32,
             y: offset.1 as u32,
-            size: ImageSize { width: size.0 as u32, height: size.1 as u32 },
+            size: ImageSize {
+                width: size.0 as u32,
+                height: size.1 as u32,
+            },
         };
         Ok(self)
     }
@@ -200,12 +230,23 @@ pub enum ReconstructionFilter {
 }
 
 /// The value of a string parameter that must be one of `choices`, the first of which is the default.
-fn choice(object: &Object, name: &'static str, choices: &[&'static str]) -> Result<&'static str, SceneError> {
+fn choice(
+    object: &Object,
+    name: &'static str,
+    choices: &[&'static str],
+) -> Result<&'static str, SceneError> {
     let given = object.string_or(name, choices[0])?;
-    choices.iter().find(|choice| choice.eq_ignore_ascii_case(given)).copied().ok_or_else(|| {
-        let message = format!("`{name}` is `{given}`; it must be one of {}", choices.join(", "));
-        object.parameter_error(name, message)
-    })
+    choices
+        .iter()
+        .find(|choice| choice.eq_ignore_ascii_case(given))
+        .copied()
+        .ok_or_else(|| {
+            let message = format!(
+                "`{name}` is `{given}`; it must be one of {}",
+                choices.join(", ")
+            );
+            object.parameter_error(name, message)
+        })
 }
 
 impl ReconstructionFilter {
@@ -217,12 +258,19 @@ impl ReconstructionFilter {
             if value > 0.0 && range.contains(&value) {
                 return Ok(value);
             }
-            Err(object.parameter_error(name, format!("`{name}` is {value}; it must be above 0 and at most 64")))
+            Err(object.parameter_error(
+                name,
+                format!("`{name}` is {value}; it must be above 0 and at most 64"),
+            ))
         };
         let filter = match object.plugin.as_str() {
             "box" => Self::Box,
-            "tent" => Self::Tent { radius: positive("radius", 1.0)? },
-            "gaussian" => Self::Gaussian { stddev: positive("stddev", 0.5)? },
+            "tent" => Self::Tent {
+                radius: positive("radius", 1.0)?,
+            },
+            "gaussian" => Self::Gaussian {
+                stddev: positive("stddev", 0.5)?,
+            },
             "mitchell" => Self::Mitchell {
                 b: object.float_or("B", 1.0 / 3.0)? as f32,
                 c: object.float_or("C", 1.0 / 3.0)? as f32,
@@ -260,9 +308,14 @@ impl ReconstructionFilter {
                 let (b, c) = (f64::from(b), f64::from(c));
                 let (x2, x3) = (x * x, x * x * x);
                 (if x < 1.0 {
-                    (12.0 - 9.0 * b - 6.0 * c) * x3 + (-18.0 + 12.0 * b + 6.0 * c) * x2 + 6.0 - 2.0 * b
+                    (12.0 - 9.0 * b - 6.0 * c) * x3 + (-18.0 + 12.0 * b + 6.0 * c) * x2 + 6.0
+                        - 2.0 * b
                 } else {
-                    (-b - 6.0 * c) * x3 + (6.0 * b + 30.0 * c) * x2 + (-12.0 * b - 48.0 * c) * x + 8.0 * b + 24.0 * c
+                    (-b - 6.0 * c) * x3
+                        + (6.0 * b + 30.0 * c) * x2
+                        + (-12.0 * b - 48.0 * c) * x
+                        + 8.0 * b
+                        + 24.0 * c
                 }) / 6.0
             }
         }
@@ -278,7 +331,10 @@ mod tests {
         let filters = [
             ReconstructionFilter::Tent { radius: 1.0 },
             ReconstructionFilter::Gaussian { stddev: 0.5 },
-            ReconstructionFilter::Mitchell { b: 1.0 / 3.0, c: 1.0 / 3.0 },
+            ReconstructionFilter::Mitchell {
+                b: 1.0 / 3.0,
+                c: 1.0 / 3.0,
+            },
         ];
         for filter in filters {
             let edge = f64::from(filter.radius());

@@ -3,7 +3,9 @@
 mod film;
 mod perspective;
 
-pub use film::{CropWindow, FilmDescription, FilmError, ImageSize, PixelFormat, ReconstructionFilter};
+pub use film::{
+    CropWindow, FilmDescription, FilmError, ImageSize, PixelFormat, ReconstructionFilter,
+};
 pub use perspective::{CameraError, FieldOfView, FovAxis, Perspective, Projection};
 
 use glam::Vec3;
@@ -34,7 +36,11 @@ pub(super) fn load(object: &Object) -> Result<Sensor, SceneError> {
         None => IndependentSampler::default(),
     };
     object.finish()?;
-    Ok(Sensor { camera, film, sampler })
+    Ok(Sensor {
+        camera,
+        film,
+        sampler,
+    })
 }
 
 /// A camera ray in world space.

@@ -125,7 +125,10 @@ impl Perspective {
                 let name = object.string_or("fov_axis", "x")?;
                 let axis = FovAxis::from_name(name).ok_or_else(|| {
                     let names = list(FovAxis::NAMES);
-                    object.parameter_error("fov_axis", format!("`fov_axis` is `{name}`; it must be one of {names}"))
+                    object.parameter_error(
+                        "fov_axis",
+                        format!("`fov_axis` is `{name}`; it must be one of {names}"),
+                    )
                 })?;
                 FieldOfView { degrees, axis }
             }
@@ -139,7 +142,10 @@ impl Perspective {
                 FieldOfView::from_focal_length(millimetres)
             }
         };
-        let clip = (object.float_or("near_clip", 1e-2)?, object.float_or("far_clip", 1e4)?);
+        let clip = (
+            object.float_or("near_clip", 1e-2)?,
+            object.float_or("far_clip", 1e4)?,
+        );
         let offset = glam::DVec2::new(
             object.float_or("principal_point_offset_x", 0.0)?,
             object.float_or("principal_point_offset_y", 0.0)?,
@@ -168,7 +174,13 @@ impl Perspective {
         if !(to_world.is_finite() && determinant != 0.0 && determinant.is_finite()) {
             return Err(CameraError::SingularTransform);
         }
-        Ok(Self { to_world, field_of_view, near, far, principal_point_offset })
+        Ok(Self {
+            to_world,
+            field_of_view,
+            near,
+            far,
+            principal_point_offset,
+        })
     }
 
     /// The camera in front of a film of this size, ready to make rays.
@@ -231,13 +243,19 @@ mod tests {
     use super::*;
 
     fn camera(axis: FovAxis) -> Perspective {
-        let fov = FieldOfView { degrees: 90.0, axis };
+        let fov = FieldOfView {
+            degrees: 90.0,
+            axis,
+        };
         Perspective::new(DMat4::IDENTITY, fov, (1.0, 100.0), Vec2::ZERO).unwrap()
     }
 
     #[test]
     fn the_field_of_view_reaches_the_edges_of_its_axis() {
-        let film = ImageSize { width: 200, height: 100 };
+        let film = ImageSize {
+            width: 200,
+            height: 100,
+        };
         let edge = |axis, x, y| {
             let ray = camera(axis).project(film).ray(Vec2::new(x, y));
             ray.direction / ray.direction.z
@@ -252,17 +270,43 @@ mod tests {
 
     #[test]
     fn clipping_planes_are_planes() {
-        let ray = camera(FovAxis::X).project(ImageSize { width: 10, height: 10 }).ray(Vec2::ZERO);
+        let ray = camera(FovAxis::X)
+            .project(ImageSize {
+                width: 10,
+                height: 10,
+            })
+            .ray(Vec2::ZERO);
         assert!((ray.near * ray.direction.z - 1.0).abs() < 1e-6);
         assert!((ray.far * ray.direction.z - 100.0).abs() < 1e-4);
-        assert!((camera(FovAxis::X).project(ImageSize { width: 10, height: 10 }).far_along(ray.direction) - ray.far).abs() < 1e-3);
+        assert!(
+            (camera(FovAxis::X)
+                .project(ImageSize {
+                    width: 10,
+                    height: 10
+                })
+                .far_along(ray.direction)
+                - ray.far)
+                .abs()
+                < 1e-3
+        );
     }
 
     #[test]
     fn nonsense_is_refused() {
-        let fov = |degrees| FieldOfView { degrees, axis: FovAxis::X };
-        for (degrees, near, far) in [(0.0, 1.0, 2.0), (180.0, 1.0, 2.0), (40.0, 0.0, 2.0), (40.0, 3.0, 2.0), (f64::NAN, 1.0, 2.0)] {
-            assert!(Perspective::new(DMat4::IDENTITY, fov(degrees), (near, far), Vec2::ZERO).is_err());
+        let fov = |degrees| FieldOfView {
+            degrees,
+            axis: FovAxis::X,
+        };
+        for (degrees, near, far) in [
+            (0.0, 1.0, 2.0),
+            (180.0, 1.0, 2.0),
+            (40.0, 0.0, 2.0),
+            (40.0, 3.0, 2.0),
+            (f64::NAN, 1.0, 2.0),
+        ] {
+            assert!(
+                Perspective::new(DMat4::IDENTITY, fov(degrees), (near, far), Vec2::ZERO).is_err()
+            );
         }
         assert!(Perspective::new(DMat4::ZERO, fov(40.0), (1.0, 2.0), Vec2::ZERO).is_err());
     }

@@ -12,9 +12,9 @@ use std::f32::consts::PI;
 
 use glam::{DVec3, Vec3};
 
-use super::{HitCoordinates, ShapeSample, SurfacePoint};
 use super::Placement;
 use super::sphere::load_radius;
+use super::{HitCoordinates, ShapeSample, SurfacePoint};
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;
 use crate::scene::xml::Object;
@@ -61,7 +61,13 @@ impl Cylinder {
     }
 
     /// The nearest hit with a distance in (`near`, `far`), solved in double precision.
-    pub fn intersect(&self, origin: Vec3, direction: Vec3, near: f32, far: f32) -> Option<CylinderHit> {
+    pub fn intersect(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        near: f32,
+        far: f32,
+    ) -> Option<CylinderHit> {
         let axis = self.axis.as_dvec3();
         let axis_squared = axis.length_squared();
         let from_start = origin.as_dvec3() - self.start.as_dvec3();

@@ -7,8 +7,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{HitCoordinates, ShapeSample, SurfacePoint};
 use super::Placement;
+use super::{HitCoordinates, ShapeSample, SurfacePoint};
 use crate::sampling::warp;
 use crate::scene::error::SceneError;
 use crate::scene::xml::Object;
@@ -73,7 +73,11 @@ impl Disk {
         let point = direction * t - to_center;
         let u = point.cross(axis_v).dot(plane) / plane.length_squared();
         let v = axis_u.cross(point).dot(plane) / plane.length_squared();
-        let hit = DiskHit { t: t as f32, u: u as f32, v: v as f32 };
+        let hit = DiskHit {
+            t: t as f32,
+            u: u as f32,
+            v: v as f32,
+        };
         (u * u + v * v <= 1.0).then_some(hit)
     }
 

@@ -5,7 +5,7 @@
 //! | `filename` | string | the mesh, beside the scene or in a `<path>` | required |
 //! | `face_normals` | boolean | shade flat: ignore and do not make vertex normals | false |
 //! | `flip_normals` | boolean | let the inner side be the outer one | false |
-//! | `flip_tex_coords` | boolean | accepted with Mitsuba's meaning; nothing here looks at texture coordinates yet | |
+//! | `flip_tex_coords` | boolean | turn texture coordinates upside down | true for `obj`, false for `ply` |
 //! | `to_world` | transform | any affine transform | identity |
 //!
 //! A mesh without vertex normals gets smooth ones, as in Mitsuba, unless `face_normals` is set. Where a file `knot.ply` is
@@ -22,10 +22,15 @@ use crate::scene::xml::Object;
 /// The mesh that the program can make itself.
 const GENERATED: &str = "knot.ply";
 
-pub(super) fn load(object: &Object, placement: &Placement, loader: &mut Loader) -> Result<Geometry, SceneError> {
-    let filename = object.string("filename")?.ok_or_else(|| object.missing("filename"))?;
+pub(super) fn load(
+    object: &Object,
+    placement: &Placement,
+    loader: &mut Loader,
+) -> Result<Geometry, SceneError> {
+    let filename = object
+        .string("filename")?
+        .ok_or_else(|| object.missing("filename"))?;
     let face_normals = object.boolean_or("face_normals", false)?;
-    object.boolean("flip_tex_coords")?;
     let mut mesh = read(object, filename, loader)?;
     if face_normals {
         mesh.normals = None;
@@ -37,14 +42,26 @@ pub(super) fn load(object: &Object, placement: &Placement, loader: &mut Loader) 
 fn read(object: &Object, filename: &str, loader: &mut Loader) -> Result<MeshData, SceneError> {
     let path = match loader.document.resolve(object, "filename", filename) {
         Ok(path) => path,
-        Err(_) if Path::new(filename).file_name().is_some_and(|name| name == GENERATED) => {
-            return Ok(mesh::knot(mesh::DEFAULT_KNOT_TRIANGLES));
+        Err(_)
+            if Path::new(filename)
+                .file_name()
+                .is_some_and(|name| name == GENERATED) =>
+        {
+            return Ok(mesh::knot::knot(mesh::knot::DEFAULT_TRIANGLES));
         }
         Err(error) => return Err(error),
     };
-    let mesh = match object.plugin.as_str() {
-        "obj" => mesh::read_obj(&path),
-        _ => mesh::read_ply(&path),
-    };
-    mesh.map_err(|error| SceneError::mesh(object.parameter_location("filename"), error))
+    let flip_tex_coords = object.boolean_or("flip_tex_coords", object.plugin == "obj")?;
+    let located = |error| SceneError::mesh(object.parameter_location("filename"), error);
+    if object.plugin == "obj" {
+        return mesh::obj::read(&path, flip_tex_coords).map_err(located);
+    }
+    let mut mesh = mesh::ply::read(&path).map_err(located)?;
+    if flip_tex_coords {
+        mesh.uvs
+            .iter_mut()
+            .flatten()
+            .for_each(|uv| uv[1] = 1.0 - uv[1]);
+    }
+    Ok(mesh)
 }

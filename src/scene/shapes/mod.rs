@@ -28,7 +28,10 @@ use crate::sampling::SolidAnglePdf;
 pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, SceneError> {
     let to_world = object.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
     let flip_normals = object.boolean_or("flip_normals", false)?;
-    let placement = Placement { to_world, flip_normals };
+    let placement = Placement {
+        to_world,
+        flip_normals,
+    };
     placement.check(object)?;
     match object.plugin.as_str() {
         "obj" | "ply" => mesh_file::load(object, &placement, loader),
@@ -37,7 +40,15 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, Sce
         "sphere" => Sphere::load(object, &placement).map(Geometry::Sphere),
         "disk" => Disk::load(&placement, object).map(Geometry::Disk),
         "cylinder" => Cylinder::load(object, &placement).map(Geometry::Cylinder),
-        _ => Err(object.unsupported(&["obj", "ply", "rectangle", "cube", "sphere", "disk", "cylinder"])),
+        _ => Err(object.unsupported(&[
+            "obj",
+            "ply",
+            "rectangle",
+            "cube",
+            "sphere",
+            "disk",
+            "cylinder",
+        ])),
     }
 }
 
@@ -53,7 +64,10 @@ impl Placement {
         if determinant != 0.0 && self.to_world.is_finite() && determinant.is_finite() {
             return Ok(());
         }
-        Err(object.parameter_error("to_world", "`to_world` flattens the shape: the transform has no inverse"))
+        Err(object.parameter_error(
+            "to_world",
+            "`to_world` flattens the shape: the transform has no inverse",
+        ))
     }
 
     /// The transform of normals.
@@ -66,11 +80,17 @@ impl Placement {
         let axes = DMat3::from_mat4(self.to_world);
         let scale = axes.determinant().abs().cbrt();
         let identity = (axes.transpose() * axes) * (1.0 / (scale * scale));
-        let deviation = (identity - DMat3::IDENTITY).to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let deviation = (identity - DMat3::IDENTITY)
+            .to_cols_array()
+            .into_iter()
+            .fold(0.0, |a: f64, b| a.max(b.abs()));
         if deviation < 1e-4 {
             return Ok(scale);
         }
-        let message = format!("a `{}` stays one under uniform scaling only; `to_world` scales or shears it otherwise", object.plugin);
+        let message = format!(
+            "a `{}` stays one under uniform scaling only; `to_world` scales or shears it otherwise",
+            object.plugin
+        );
         Err(object.parameter_error("to_world", message))
     }
 }
@@ -113,7 +133,11 @@ pub struct SurfacePoint {
 impl SurfacePoint {
     /// A point whose shading normal is the geometric one.
     pub(crate) fn flat(position: Vec3, normal: Vec3) -> Self {
-        Self { position, geometric_normal: normal, shading_normal: normal }
+        Self {
+            position,
+            geometric_normal: normal,
+            shading_normal: normal,
+        }
     }
 
     /// The same point with its outer side turned inside.
@@ -147,7 +171,12 @@ impl ShapeSample {
         let direction = offset / distance;
         let cosine = direction.dot(point.geometric_normal).abs();
         let pdf = crate::sampling::AreaPdf(1.0 / area).to_solid_angle(distance, cosine);
-        Self { point, direction, distance, pdf }
+        Self {
+            point,
+            direction,
+            distance,
+            pdf,
+        }
     }
 }
 

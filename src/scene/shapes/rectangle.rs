@@ -10,7 +10,12 @@ use crate::scene::mesh::MeshData;
 /// The rectangle in its own space.
 pub(crate) fn rectangle() -> MeshData {
     MeshData {
-        positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
+        positions: vec![
+            [-1.0, -1.0, 0.0],
+            [1.0, -1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+        ],
         normals: None,
         uvs: Some(vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),
         triangles: vec![[0, 1, 2], [2, 3, 0]],

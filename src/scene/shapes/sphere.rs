@@ -11,8 +11,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{HitCoordinates, ShapeSample, SurfacePoint};
 use super::Placement;
+use super::{HitCoordinates, ShapeSample, SurfacePoint};
 use crate::sampling::{Frame, SolidAnglePdf, warp};
 use crate::scene::error::SceneError;
 use crate::scene::xml::Object;
@@ -34,7 +34,10 @@ pub(super) fn load_radius(object: &Object) -> Result<f64, SceneError> {
     if radius > 0.0 {
         return Ok(radius);
     }
-    Err(object.parameter_error("radius", format!("`radius` is {radius}; it must be positive")))
+    Err(object.parameter_error(
+        "radius",
+        format!("`radius` is {radius}; it must be positive"),
+    ))
 }
 
 impl Sphere {
@@ -67,7 +70,9 @@ impl Sphere {
         let c = to_center.length_squared() - radius * radius;
         let (t0, t1) = (c / q, q / a);
         let (first, second) = if t0 < t1 { (t0, t1) } else { (t1, t0) };
-        [first as f32, second as f32].into_iter().find(|&t| t > near && t < far)
+        [first as f32, second as f32]
+            .into_iter()
+            .find(|&t| t > near && t < far)
     }
 
     pub(super) fn surface(&self, hit: &HitCoordinates) -> SurfacePoint {
@@ -91,7 +96,11 @@ impl Sphere {
         let Some(one_minus_cosine) = self.cone(reference) else {
             let normal = warp::sphere(u);
             let point = SurfacePoint::flat(self.center + normal * self.radius, normal);
-            return ShapeSample::by_area(reference, point.flipped_if(self.flip_normals), self.area());
+            return ShapeSample::by_area(
+                reference,
+                point.flipped_if(self.flip_normals),
+                self.area(),
+            );
         };
         let axis = self.center - reference;
         let center_distance = axis.length();

@@ -39,7 +39,9 @@ impl Triangles {
         object: &Object,
     ) -> Result<Geometry, SceneError> {
         if placement.to_world.determinant() < 0.0 {
-            mesh.triangles.iter_mut().for_each(|triangle| triangle.reverse());
+            mesh.triangles
+                .iter_mut()
+                .for_each(|triangle| triangle.reverse());
         }
         Self::place_mesh(mesh, false, placement, object)
     }
@@ -55,24 +57,45 @@ impl Triangles {
             let local = Vec3::from(*position).as_dvec3();
             *position = placement.to_world.transform_point3(local).as_vec3().into();
         }
-        if mesh.positions.iter().flatten().any(|coordinate| !coordinate.is_finite()) {
-            return Err(object.parameter_error("to_world", "`to_world` moves vertices beyond all numbers"));
+        if mesh
+            .positions
+            .iter()
+            .flatten()
+            .any(|coordinate| !coordinate.is_finite())
+        {
+            return Err(
+                object.parameter_error("to_world", "`to_world` moves vertices beyond all numbers")
+            );
         }
         let to_world = placement.normals();
         let normals = match mesh.normals.take() {
             Some(normals) => Some(
                 normals
                     .into_iter()
-                    .map(|normal| (to_world * DVec3::from(normal.map(f64::from))).as_vec3().normalize_or_zero())
+                    .map(|normal| {
+                        (to_world * DVec3::from(normal.map(f64::from)))
+                            .as_vec3()
+                            .normalize_or_zero()
+                    })
                     .collect(),
             ),
-            None if smooth => Some(mesh::smooth_normals(&mesh).into_iter().map(Vec3::from).collect()),
+            None if smooth => Some(
+                mesh::smooth_normals(&mesh.positions, &mesh.triangles)
+                    .into_iter()
+                    .map(Vec3::from)
+                    .collect(),
+            ),
             None => None,
         };
-        let attributes = TriangleAttributes { normals, flip_normals: placement.flip_normals };
+        let attributes = TriangleAttributes {
+            normals,
+            flip_normals: placement.flip_normals,
+        };
         let positions = Arc::new(VertexBuffer::new(mesh.positions));
         let indices = Arc::new(IndexBuffer::new(mesh.triangles));
-        Ok(Geometry::Triangles(Self::new(positions, indices, attributes)))
+        Ok(Geometry::Triangles(Self::new(
+            positions, indices, attributes,
+        )))
     }
 
     /// The mesh over buffers in world space. Indices must be in range and `attributes.normals`, if given, as long as
@@ -82,8 +105,16 @@ impl Triangles {
         indices: Arc<IndexBuffer>,
         attributes: TriangleAttributes,
     ) -> Self {
-        let area = triangle_areas(&positions, &indices).map(f64::from).sum::<f64>() as f32;
-        Self { positions, indices, attributes, area, by_area: None }
+        let area = triangle_areas(&positions, &indices)
+            .map(f64::from)
+            .sum::<f64>() as f32;
+        Self {
+            positions,
+            indices,
+            attributes,
+            area,
+            by_area: None,
+        }
     }
 
     /// Makes the mesh ready for [`Self::sample`]. Returns whether it can be: its area must be positive and finite.
@@ -127,8 +158,12 @@ impl Triangles {
             None => geometric_normal,
         };
         let position = a + u * (b - a) + v * (c - a);
-        SurfacePoint { position, geometric_normal, shading_normal }
-            .flipped_if(self.attributes.flip_normals)
+        SurfacePoint {
+            position,
+            geometric_normal,
+            shading_normal,
+        }
+        .flipped_if(self.attributes.flip_normals)
     }
 
     pub(super) fn area(&self) -> f32 {

@@ -1,51 +1,53 @@
 //! The attributes of one element, with `$name` substituted and every one checked.
 
-use std::path::Path;
-use std::sync::Arc;
-
 use roxmltree::Node;
 
 use super::definitions::Definitions;
+use super::position::{Cursor, advance};
 use crate::scene::error::{Location, SceneError, list};
 
 /// One element: its tag, where it stands and its attributes.
 pub(super) struct Element<'a> {
     pub(super) tag: &'a str,
     pub(super) location: Location,
+    /// From the beginning of the element on.
+    text: &'a str,
     attributes: Vec<Attribute<'a>>,
 }
 
 struct Attribute<'a> {
     name: &'a str,
     value: String,
-    location: Location,
+    /// Its place in bytes from the beginning of the element.
+    offset: usize,
 }
 
 impl<'a> Element<'a> {
     /// Reads the attributes of `node`.
     pub(super) fn new(
         node: Node<'a, 'a>,
-        file: &Arc<Path>,
+        cursor: &mut Cursor,
         definitions: &mut Definitions,
     ) -> Result<Self, SceneError> {
-        let location = location(node, node.range().start, file);
-        let mut attributes = Vec::new();
+        let start = node.range().start;
+        let mut element = Self {
+            tag: node.tag_name().name(),
+            location: cursor.location(node),
+            text: &node.document().input_text()[start..],
+            attributes: Vec::new(),
+        };
         for attribute in node.attributes() {
-            let location = self::location(node, attribute.range().start, file);
+            let offset = attribute.range().start - start;
             let value = definitions
                 .substitute(attribute.value())
-                .map_err(|message| SceneError::at(&location, message))?;
-            attributes.push(Attribute {
+                .map_err(|message| SceneError::at(&element.place(offset), message))?;
+            element.attributes.push(Attribute {
                 name: attribute.name(),
                 value,
-                location,
+                offset,
             });
         }
-        Ok(Self {
-            tag: node.tag_name().name(),
-            location,
-            attributes,
-        })
+        Ok(element)
     }
 
     /// An error unless all of `required` and nothing but those and `optional` are there.
@@ -57,7 +59,7 @@ impl<'a> Element<'a> {
                     "<{}> has no attribute `{}`; it has: {allowed}",
                     self.tag, attribute.name
                 );
-                return Err(SceneError::at(&attribute.location, message));
+                return Err(SceneError::at(&self.place(attribute.offset), message));
             }
         }
         match required.iter().find(|name| self.get(name).is_none()) {
@@ -103,25 +105,17 @@ impl<'a> Element<'a> {
 
     /// An error in one attribute of this element.
     pub(super) fn attribute_error(&self, name: &str, message: impl Into<String>) -> SceneError {
-        let location = self
-            .find(name)
-            .map_or(&self.location, |found| &found.location);
-        SceneError::at(location, message)
+        let offset = self.find(name).map_or(0, |attribute| attribute.offset);
+        SceneError::at(&self.place(offset), message)
+    }
+
+    fn place(&self, offset: usize) -> Location {
+        advance(&self.location, &self.text[..offset])
     }
 
     fn find(&self, name: &str) -> Option<&Attribute<'a>> {
         self.attributes
             .iter()
             .find(|attribute| attribute.name == name)
-    }
-}
-
-/// The place of byte `offset` of the file that `node` is in.
-pub(super) fn location(node: Node<'_, '_>, offset: usize, file: &Arc<Path>) -> Location {
-    let position = node.document().text_pos_at(offset);
-    Location {
-        file: file.clone(),
-        line: position.row,
-        column: position.col,
     }
 }

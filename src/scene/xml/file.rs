@@ -8,6 +8,7 @@ use roxmltree::Node;
 use super::attributes::Element;
 use super::object::Class;
 use super::parser::{Parent, Parser, draft, link};
+use super::position::Cursor;
 use super::references::{DraftIndex, Target};
 use super::search_path::SearchPath;
 use crate::scene::error::{Location, SceneError};
@@ -18,6 +19,7 @@ const MAX_INCLUDES: usize = 15;
 /// A file that is being read.
 pub(super) struct File {
     pub(super) path: Arc<Path>,
+    pub(super) cursor: Cursor,
     /// Where the files that it names are looked for.
     pub(super) search_path: SearchPath,
     /// The files between the main one and this one, the main one first.
@@ -42,8 +44,10 @@ impl File {
         {
             search_path.prepend(directory.to_owned());
         }
+        let path: Arc<Path> = path.into();
         Self {
-            path: path.into(),
+            cursor: Cursor::new(path.clone()),
+            path,
             search_path,
             included_from,
         }
@@ -75,7 +79,7 @@ impl Parser {
     /// Reads the main file and returns its `<scene>`.
     pub(super) fn scene(&mut self, text: &str, file: &mut File) -> Result<DraftIndex, SceneError> {
         let document = read_xml(text, &file.path)?;
-        let (node, element) = self.root(&document, &file.path)?;
+        let (node, element) = self.root(&document, file)?;
         if element.tag != Class::Scene.tag() {
             return Err(element.error(format!(
                 "the root element has to be <scene version=\"3.0.0\">, not <{}>",
@@ -112,7 +116,7 @@ impl Parser {
         })?;
         let mut file = file.included(&path);
         let document = read_xml(&text, &file.path)?;
-        let (node, root) = self.root(&document, &file.path)?;
+        let (node, root) = self.root(&document, &mut file)?;
         let parent = match Class::from_tag(root.tag) {
             Some(Class::Scene) => {
                 root.check(&["version"], &["type", "id", "name"])?;
@@ -145,10 +149,10 @@ impl Parser {
     fn root<'a>(
         &mut self,
         document: &'a roxmltree::Document<'a>,
-        path: &Arc<Path>,
+        file: &mut File,
     ) -> Result<(Node<'a, 'a>, Element<'a>), SceneError> {
         let node = document.root_element();
-        let element = Element::new(node, path, &mut self.definitions)?;
+        let element = Element::new(node, &mut file.cursor, &mut self.definitions)?;
         if element.get("version").is_none() {
             return Err(element.error(format!(
                 "the root element <{}> needs the attribute version=\"3.0.0\"",

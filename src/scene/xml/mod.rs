@@ -13,6 +13,7 @@ mod document;
 mod file;
 mod object;
 mod parser;
+mod position;
 mod references;
 mod search_path;
 mod transform;

@@ -147,7 +147,7 @@ pub(super) struct Asked {
 impl Object {
     /// A `<boolean>`.
     pub fn boolean(&self, name: &'static str) -> Result<Option<bool>, SceneError> {
-        self.convert(name, "boolean", |value| match value {
+        self.convert(name, "<boolean>", |value| match value {
             Value::Boolean(boolean) => Some(*boolean),
             _ => None,
         })
@@ -160,7 +160,7 @@ impl Object {
 
     /// An `<integer>`.
     pub fn integer(&self, name: &'static str) -> Result<Option<i64>, SceneError> {
-        self.convert(name, "integer", |value| match value {
+        self.convert(name, "<integer>", |value| match value {
             Value::Integer(integer) => Some(*integer),
             _ => None,
         })
@@ -173,7 +173,7 @@ impl Object {
 
     /// A `<float>`; an `<integer>` will do. Always finite.
     pub fn float(&self, name: &'static str) -> Result<Option<f64>, SceneError> {
-        self.convert(name, "float", |value| match value {
+        self.convert(name, "<float> or <integer>", |value| match value {
             Value::Float(float) => Some(*float),
             Value::Integer(integer) => Some(*integer as f64),
             _ => None,
@@ -187,7 +187,7 @@ impl Object {
 
     /// A `<string>`.
     pub fn string(&self, name: &'static str) -> Result<Option<&str>, SceneError> {
-        self.convert(name, "string", |value| match value {
+        self.convert(name, "<string>", |value| match value {
             Value::String(string) => Some(string.as_str()),
             _ => None,
         })
@@ -204,7 +204,7 @@ impl Object {
 
     /// A `<point>` or `<vector>`.
     pub fn vector(&self, name: &'static str) -> Result<Option<DVec3>, SceneError> {
-        self.convert(name, "point or vector", |value| match value {
+        self.convert(name, "<point> or <vector>", |value| match value {
             Value::Vector(vector) => Some(*vector),
             _ => None,
         })
@@ -212,7 +212,7 @@ impl Object {
 
     /// A `<transform>`, affine; it may be singular.
     pub fn transform(&self, name: &'static str) -> Result<Option<DMat4>, SceneError> {
-        self.convert(name, "transform", |value| match value {
+        self.convert(name, "<transform>", |value| match value {
             Value::Transform(matrix) => Some(*matrix),
             _ => None,
         })
@@ -220,7 +220,7 @@ impl Object {
 
     /// A spectrum in any of its forms.
     pub fn spectrum(&self, name: &'static str) -> Result<Option<SpectrumProperty>, SceneError> {
-        let expected = "float, rgb, spectrum or texture";
+        let expected = "<float>, <rgb>, <spectrum> or <texture>";
         if let Some(child) = self.child_named(name) {
             if child.object.class != Class::Texture {
                 return Err(self.wrong_type(name, expected, child.object.class.tag()));
@@ -245,7 +245,7 @@ impl Object {
     pub fn child(&self, class: Class) -> Result<Option<&Child>, SceneError> {
         let children = self.children(class);
         if let Some(second) = children.get(1) {
-            let message = format!("the {self} already has a {class}; it can have one");
+            let message = format!("the {self} has more than one <{class}>; it can have one");
             return Err(SceneError::at(&second.location, message));
         }
         Ok(children.first().copied())
@@ -360,7 +360,7 @@ impl Object {
         self.parameter_error(
             name,
             format!(
-                "`{name}` of `{}` has to be a {expected}, not a {found}",
+                "`{name}` of `{}` has to be {expected}, not <{found}>",
                 self.plugin
             ),
         )

@@ -1,12 +1,9 @@
 //! The walk over the elements of a scene file.
 
-use std::path::Path;
-use std::sync::Arc;
-
 use glam::DMat4;
 use roxmltree::Node;
 
-use super::attributes::{Element, location};
+use super::attributes::Element;
 use super::definitions::Definitions;
 use super::file::File;
 use super::object::{Class, Parameter};
@@ -41,10 +38,10 @@ impl Parser {
     ) -> Result<(), SceneError> {
         for child in node.children() {
             if child.is_element() {
-                let element = Element::new(child, &file.path, &mut self.definitions)?;
+                let element = Element::new(child, &mut file.cursor, &mut self.definitions)?;
                 self.element(child, &element, parent, file)?;
             } else {
-                check_no_text(child, &file.path)?;
+                check_no_text(child, file)?;
             }
         }
         Ok(())
@@ -70,7 +67,7 @@ impl Parser {
             let matrix = self.transform(node, file)?;
             return self.parameter(element, parent, Value::Transform(matrix));
         }
-        check_no_children(node, element, &file.path)?;
+        check_no_children(node, element, file)?;
         match element.tag {
             "include" => self.include(element, parent, file),
             "ref" => {
@@ -137,16 +134,16 @@ impl Parser {
         self.drafts.add_parameter(parent.index, parameter)
     }
 
-    fn transform(&mut self, node: Node, file: &File) -> Result<DMat4, SceneError> {
+    fn transform(&mut self, node: Node, file: &mut File) -> Result<DMat4, SceneError> {
         let mut matrix = DMat4::IDENTITY;
         for child in node.children() {
             if !child.is_element() {
-                check_no_text(child, &file.path)?;
+                check_no_text(child, file)?;
                 continue;
             }
-            let element = Element::new(child, &file.path, &mut self.definitions)?;
+            let element = Element::new(child, &mut file.cursor, &mut self.definitions)?;
             matrix = transform::step(&element)? * matrix;
-            check_no_children(child, &element, &file.path)?;
+            check_no_children(child, &element, file)?;
             if !matrix.is_finite() {
                 return Err(element.error("the numbers of the transform are too large"));
             }
@@ -192,7 +189,10 @@ fn search_directory(element: &Element, parent: Parent, file: &mut File) -> Resul
     if !parent.is_file_root {
         return Err(element.error("<path> can only stand directly inside the root element"));
     }
-    let directory = element.convert("value", |name| file.search_path.find(name))?;
+    let directory = element.convert("value", |name| match file.search_path.find(name)? {
+        directory if directory.is_dir() => Ok(directory),
+        _ => Err(format!("`{name}` is not a directory")),
+    })?;
     file.search_path.prepend(directory);
     Ok(())
 }
@@ -248,19 +248,19 @@ fn check_parameter_tag(element: &Element) -> Result<(), SceneError> {
     )))
 }
 
-fn check_no_children(node: Node, element: &Element, path: &Arc<Path>) -> Result<(), SceneError> {
+fn check_no_children(node: Node, element: &Element, file: &mut File) -> Result<(), SceneError> {
     for child in node.children() {
         if child.is_element() {
-            let place = location(child, child.range().start, path);
+            let place = file.cursor.location(child);
             let message = format!("nothing can stand inside <{}>", element.tag);
             return Err(SceneError::at(&place, message));
         }
-        check_no_text(child, path)?;
+        check_no_text(child, file)?;
     }
     Ok(())
 }
 
-fn check_no_text(node: Node, path: &Arc<Path>) -> Result<(), SceneError> {
+fn check_no_text(node: Node, file: &mut File) -> Result<(), SceneError> {
     let text = match node.is_text() {
         true => node.text().unwrap_or_default(),
         false => "",
@@ -268,7 +268,7 @@ fn check_no_text(node: Node, path: &Arc<Path>) -> Result<(), SceneError> {
     if text.trim().is_empty() {
         return Ok(());
     }
-    let place = location(node, node.range().start, path);
+    let place = file.cursor.location(node);
     let message = format!("the text `{}` has no meaning here", text.trim());
     Err(SceneError::at(&place, message))
 }

@@ -145,6 +145,10 @@ fn elements_and_attributes_that_do_not_belong() {
         r#"<path value="nowhere"/>"#,
         "scene.xml:2:7: `nowhere` does not exist",
     );
+    check(
+        r#"<path value="scene.xml"/>"#,
+        "scene.xml:2:7: `scene.xml` is not a directory",
+    );
     check_parameter(
         r#"<path value="."/>"#,
         "scene.xml:2:21: <path> can only stand directly inside the root element",

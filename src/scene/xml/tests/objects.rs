@@ -139,18 +139,18 @@ fn wrong_types_are_errors_where_the_parameter_is_written() {
     let radius = object.float("radius").unwrap_err();
     ends(
         radius,
-        ":3:2: `radius` of `sphere` has to be a float, not a string",
+        ":3:2: `radius` of `sphere` has to be <float> or <integer>, not <string>",
     );
     let n = object.integer("n").unwrap_err();
-    ends(n, ":4:2: `n` of `sphere` has to be a integer, not a float");
+    ends(n, ":4:2: `n` of `sphere` has to be <integer>, not <float>");
     let c = object.spectrum("c").unwrap_err();
     ends(
         c,
-        ":5:2: `c` of `sphere` has to be a float, rgb, spectrum or texture, not a bsdf",
+        ":5:2: `c` of `sphere` has to be <float>, <rgb>, <spectrum> or <texture>, not <bsdf>",
     );
     ends(
         object.float("c").unwrap_err(),
-        "has to be a float, not a bsdf",
+        "has to be <float> or <integer>, not <bsdf>",
     );
     ends(
         object.missing("height"),
@@ -176,7 +176,7 @@ fn unknown_plugins_and_second_children_are_errors() {
         .to_string();
     assert!(
         message.ends_with(
-            "scene.xml:2:43: the scene `scene` already has a integrator; it can have one"
+            "scene.xml:2:43: the scene `scene` has more than one <integrator>; it can have one"
         ),
         "{message}"
     );
