@@ -1,12 +1,12 @@
-//! Stage: rays arrive. Emitted light is added, and surfaces that scatter become the vertices of the next stages.
+//! Stage: paths arrive. Emitted light is added, and surfaces that scatter become the vertices of the next stages.
 
 use glam::Vec3;
 
-use super::batch::{CameraPaths, Segments, Vertices};
+use super::batch::{Arrivals, CameraPaths, Segments, Vertices};
 use super::engine::Engine;
 use super::settings::DirectLight;
 use crate::sampling::{Frame, SolidAnglePdf, power_heuristic};
-use crate::scene::{Emitter, HitCoordinates, Side};
+use crate::scene::{Emitter, Side};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
@@ -17,6 +17,7 @@ pub(super) fn arrive<C: Colour>(
     engine: &Engine,
     paths: &mut CameraPaths<C>,
     segments: &Segments<C>,
+    arrivals: &Arrivals,
     vertices: &mut Vertices<C>,
     camera_rays: bool,
     scatters: bool,
@@ -36,13 +37,7 @@ pub(super) fn arrive<C: Colour>(
             }
             continue;
         };
-        let [u, v] = segments.hits.uv(i);
-        let point = shape.geometry.surface(&HitCoordinates {
-            primitive: segments.hits.primitive_id(i),
-            u,
-            v,
-            normal: segments.hits.normal(i).into(),
-        });
+        let point = arrivals.point[i];
         if let Some(Emitter::Area(light)) =
             shape.emitter.map(|id| &engine.scene.emitters[id.index()])
         {

@@ -1,9 +1,9 @@
 //! The engine: batches of path states, and the stages that move them one bounce on.
 //!
 //! ```text
-//!  camera -> intersect -> arrive -> direct light -> walk -> scatter -+
-//!               ^          (emission)                                |
-//!               +----------------------------------------------------+
+//!  camera -> intersect -> surface -> emission -> direct -> walk -> scatter -+
+//!                ^                                                          |
+//!                +----------------------------------------------------------+
 //! ```
 //!
 //! A batch holds all camera paths of one tile in one pass. Path states are structures of arrays: [`Segments`] are rays
@@ -23,6 +23,7 @@ mod offset;
 mod scatter;
 mod settings;
 mod statistics;
+mod surface;
 mod walk_stage;
 
 pub use accelerator::{Accelerator, AcceleratorOptions};

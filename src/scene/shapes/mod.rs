@@ -7,6 +7,7 @@ mod cube;
 mod cylinder;
 mod disk;
 mod mesh_file;
+mod mesh_sampling;
 mod rectangle;
 mod sphere;
 mod triangles;
@@ -14,6 +15,7 @@ mod triangles;
 pub use cylinder::{Cylinder, CylinderHit};
 pub use disk::{Disk, DiskHit};
 pub use sphere::Sphere;
+pub(crate) use triangles::Corners;
 pub use triangles::{TriangleAttributes, Triangles};
 
 use glam::{DMat3, DMat4, Vec3};
@@ -120,7 +122,7 @@ pub enum Geometry {
 }
 
 /// A point of a shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfacePoint {
     /// Position in world space, on the surface as precisely as `f32` can say it.
     pub position: Vec3,

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
+use super::mesh_sampling::MeshSampling;
 use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfacePoint};
 use crate::embree::{IndexBuffer, VertexBuffer};
-use crate::sampling::{AliasTable, warp};
 use crate::scene::error::SceneError;
 use crate::scene::mesh::{self, MeshData};
 use crate::scene::xml::Object;
@@ -18,8 +18,8 @@ pub struct Triangles {
     indices: Arc<IndexBuffer>,
     attributes: TriangleAttributes,
     area: f32,
-    /// Triangles by area; built only for meshes that emit.
-    by_area: Option<AliasTable>,
+    /// Made only for meshes that emit.
+    sampling: Option<MeshSampling>,
 }
 
 /// What a mesh carries beside positions and indices.
@@ -29,6 +29,14 @@ pub struct TriangleAttributes {
     pub normals: Option<Vec<Vec3>>,
     /// Whether the clockwise side of the triangles is the outer one.
     pub flip_normals: bool,
+}
+
+/// What is stored at the three vertices of a triangle, in world space.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Corners {
+    positions: [Vec3; 3],
+    /// Zero where the mesh has none.
+    normals: [Vec3; 3],
 }
 
 impl Triangles {
@@ -68,7 +76,7 @@ impl Triangles {
             );
         }
         let to_world = placement.normals();
-        let normals = match mesh.normals.take() {
+        let normals: Option<Vec<Vec3>> = match mesh.normals.take() {
             Some(normals) => Some(
                 normals
                     .into_iter()
@@ -88,7 +96,7 @@ impl Triangles {
             None => None,
         };
         let attributes = TriangleAttributes {
-            normals,
+            normals: normals.filter(|normals| !are_flat(&mesh, normals)),
             flip_normals: placement.flip_normals,
         };
         let positions = Arc::new(VertexBuffer::new(mesh.positions));
@@ -113,15 +121,14 @@ impl Triangles {
             indices,
             attributes,
             area,
-            by_area: None,
+            sampling: None,
         }
     }
 
     /// Makes the mesh ready for [`Self::sample`]. Returns whether it can be: its area must be positive and finite.
     pub fn prepare_sampling(&mut self) -> bool {
-        let areas: Vec<f32> = triangle_areas(&self.positions, &self.indices).collect();
-        self.by_area = AliasTable::new(&areas);
-        self.by_area.is_some()
+        self.sampling = MeshSampling::new(self);
+        self.sampling.is_some()
     }
 
     /// The vertex positions, in world space.
@@ -134,28 +141,65 @@ impl Triangles {
         &self.indices
     }
 
+    /// Whether the mesh is shaded with vertex normals.
+    pub fn is_smooth(&self) -> bool {
+        self.attributes.normals.is_some()
+    }
+
     #[inline]
     pub(super) fn surface(&self, hit: &HitCoordinates) -> SurfacePoint {
         self.point(hit.primitive, hit.u, hit.v)
     }
 
     /// The point of a triangle at barycentric coordinates of its second and third vertex.
+    #[inline]
+    pub(super) fn point(&self, triangle: u32, u: f32, v: f32) -> SurfacePoint {
+        let corners = self.corners(triangle);
+        self.interpolate(&self.corner_data(corners), u, v)
+    }
+
+    /// The vertices of a triangle. Together with [`Self::corner_data`] and [`Self::interpolate`] this is
+    /// [`Self::point`] in three steps, so that a batch can take each step for many hits at once and does not wait for
+    /// the memory of one after the other.
+    #[inline]
+    pub(crate) fn corners(&self, triangle: u32) -> [u32; 3] {
+        self.indices[triangle as usize]
+    }
+
+    /// What is stored at the vertices of a triangle.
+    #[inline]
+    pub(crate) fn corner_data(&self, corners: [u32; 3]) -> Corners {
+        let [a, b, c] = corners.map(|i| i as usize);
+        let positions = &**self.positions;
+        Corners {
+            positions: [
+                positions[a].into(),
+                positions[b].into(),
+                positions[c].into(),
+            ],
+            normals: match &self.attributes.normals {
+                Some(normals) => [normals[a], normals[b], normals[c]],
+                None => [Vec3::ZERO; 3],
+            },
+        }
+    }
+
+    /// The point at barycentric coordinates of the second and third vertex.
     ///
     /// Interpolating the corners is more precise than going along the ray, whose error grows with the distance
     /// (Wächter and Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection").
     #[inline]
-    fn point(&self, triangle: u32, u: f32, v: f32) -> SurfacePoint {
-        let corners = self.indices[triangle as usize];
-        let [a, b, c] = corners.map(|i| Vec3::from(self.positions[i as usize]));
+    pub(crate) fn interpolate(&self, corners: &Corners, u: f32, v: f32) -> SurfacePoint {
+        let [a, b, c] = corners.positions;
         let geometric_normal = (b - a).cross(c - a).normalize_or_zero();
-        let shading_normal = match &self.attributes.normals {
-            Some(normals) => {
-                let [na, nb, nc] = corners.map(|i| normals[i as usize]);
-                let interpolated = na + u * (nb - na) + v * (nc - na);
-                // Opposite normals can cancel out; then the true surface decides.
-                interpolated.try_normalize().unwrap_or(geometric_normal)
-            }
-            None => geometric_normal,
+        let shading_normal = if self.is_smooth() {
+            let [a, b, c] = corners.normals;
+            // Opposite normals can cancel out; then the true surface decides.
+            (a + u * (b - a) + v * (c - a))
+                .try_normalize()
+                .unwrap_or(geometric_normal)
+        } else {
+            geometric_normal
         };
         let position = a + u * (b - a) + v * (c - a);
         SurfacePoint {
@@ -170,17 +214,18 @@ impl Triangles {
         self.area
     }
 
+    pub(super) fn triangle_areas(&self) -> impl Iterator<Item = f32> {
+        triangle_areas(&self.positions, &self.indices)
+    }
+
+    #[inline]
     pub(super) fn sample(&self, reference: Vec3, u: [f32; 2]) -> ShapeSample {
-        // A mesh that was never prepared is no light, and nobody samples it; its first triangle is a valid answer.
-        let (triangle, remainder) = match &self.by_area {
-            Some(table) => {
-                let chosen = table.sample(u[0]);
-                (chosen.index, chosen.remainder)
-            }
-            None => (0, u[0]),
+        let point = match &self.sampling {
+            Some(sampling) => sampling.sample(self, u),
+            // A mesh that was never prepared is no light, and nobody samples it.
+            None => self.point(0, u[0], u[1] * (1.0 - u[0])),
         };
-        let [v, w] = warp::triangle([remainder, u[1]]);
-        ShapeSample::by_area(reference, self.point(triangle as u32, v, w), self.area)
+        ShapeSample::by_area(reference, point, self.area)
     }
 }
 
@@ -188,5 +233,16 @@ fn triangle_areas(positions: &[[f32; 3]], indices: &[[u32; 3]]) -> impl Iterator
     indices.iter().map(|triangle| {
         let [a, b, c] = triangle.map(|i| Vec3::from(positions[i as usize]));
         0.5 * (b - a).cross(c - a).length()
+    })
+}
+
+/// Whether vertex normals say no more than the triangles themselves.
+fn are_flat(mesh: &MeshData, normals: &[Vec3]) -> bool {
+    mesh.triangles.iter().all(|triangle| {
+        let [a, b, c] = triangle.map(|i| Vec3::from(mesh.positions[i as usize]));
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        triangle
+            .iter()
+            .all(|&i| normals[i as usize].dot(normal) > 1.0 - 1e-6)
     })
 }
