@@ -4,6 +4,7 @@
 
 pub mod embree;
 pub mod film;
+pub mod models;
 pub mod render;
 pub mod sampling;
 pub mod scene;

@@ -55,8 +55,10 @@ pub fn write_exr(
             std::iter::once(AnyChannel::new("Y", column(&luminance))).collect()
         }
     };
-    let mut attributes = LayerAttributes::default();
-    attributes.software_name = Some(Text::from(concat!("cohort ", env!("CARGO_PKG_VERSION"))));
+    let mut attributes = LayerAttributes {
+        software_name: Some(Text::from(concat!("cohort ", env!("CARGO_PKG_VERSION")))),
+        ..LayerAttributes::default()
+    };
     for (name, value) in &options.attributes {
         if let (Some(name), Some(value)) = (Text::new_or_none(name), Text::new_or_none(value)) {
             attributes.other.insert(name, AttributeValue::Text(value));

@@ -1,7 +1,8 @@
 //! Wavefront OBJ files.
 //!
 //! All objects and groups of a file become one mesh, and corners with the same indices one vertex, as in Mitsuba 3,
-//! so that recomputed normals are smooth across the borders of groups and not across seams of the texture.
+//! so that recomputed normals are smooth across the borders of groups and not across seams of the texture. (The crate
+//! `tobj` splits a file into one mesh per group and forgets which corners were the same; its errors name no line.)
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;

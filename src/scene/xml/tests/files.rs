@@ -105,7 +105,7 @@ fn cyclic_and_missing_includes_are_errors() {
     );
 
     let main = SceneSource::File("no/such/scene.xml".into());
-    let message = parse(&main, &[]).unwrap_err().to_string();
+    let message = parse(&main, &[], &[]).unwrap_err().to_string();
     assert!(
         message.starts_with("cannot read the scene no/such/scene.xml: "),
         "{message}"
@@ -163,7 +163,7 @@ fn built_in_scenes_have_a_name() {
         name: "knot",
         text: "<scene version=\"3.0.0\"><blubb/></scene>",
     };
-    let message = parse(&source, &[]).unwrap_err().to_string();
+    let message = parse(&source, &[], &[]).unwrap_err().to_string();
     assert!(
         message.starts_with("<knot>:1:24: unknown element <blubb>; "),
         "{message}"

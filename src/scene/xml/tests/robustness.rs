@@ -15,7 +15,7 @@ const SCENE: &str = r#"<scene version="3.0.0"><default name="a" value="1"/><path
 /// Parses without asking what comes out.
 fn try_parse(text: &str) {
     let mut parser = Parser {
-        definitions: definitions::Definitions::new(&[]).unwrap(),
+        definitions: definitions::Definitions::new(&[], &[]).unwrap(),
         drafts: references::Drafts::default(),
     };
     let search_path = search_path::SearchPath::working_directory();
@@ -31,7 +31,7 @@ fn the_mutated_scene_is_right_to_begin_with() {
         name: "test",
         text: SCENE,
     };
-    parse(&source, &[]).unwrap();
+    parse(&source, &[], &[]).unwrap();
 }
 
 #[test]
