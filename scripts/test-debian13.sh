@@ -14,7 +14,7 @@ cache=${COHORT_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/cohort}
 root=$cache/debian13
 target=$cache/debian13-target
 suite=trixie
-packages=(libembree-dev libclang-dev gcc libc6-dev pkg-config ca-certificates)
+packages=(libembree-dev libclang-dev g++ libc6-dev pkg-config ca-certificates)
 
 skip() {
     echo "============================================================" >&2

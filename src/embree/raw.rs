@@ -3,6 +3,7 @@
 //! Rays and hits are not taken from here but from [`super::ray`] and [`super::packet`]: with
 //! Embree 4 these declarations are older than the library, and their hits are too small.
 #![allow(
+    clippy::all,
     dead_code,
     missing_docs,
     non_camel_case_types,
