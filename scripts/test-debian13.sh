@@ -179,6 +179,7 @@ echo "Debian $(cat "$root/etc/debian_version"), Embree $(inside dpkg-query -W -f
 
 # Step 1: the tests of the Embree layer, against Embree 4.
 in_checkout cargo test --locked --lib embree
+in_checkout cargo test --locked --test embree_threads
 
 # Step 2: (to come) one small render, compared with Debian 12's.
 
