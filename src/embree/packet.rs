@@ -89,7 +89,7 @@ pub struct HitPacket<const K: usize> {
     pub instance_id: [u32; K],
     /// Which one of an array of instances; only Embree 4 writes it.
     #[cfg(embree4)]
-    instance_primitive_id: [u32; K],
+    pub(super) instance_primitive_id: [u32; K],
 }
 
 impl<const K: usize> HitPacket<K> {

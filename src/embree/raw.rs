@@ -4,7 +4,6 @@
 //! Embree 4 these declarations are older than the library, and their hits are too small.
 #![allow(
     clippy::all,
-    clippy::upper_case_acronyms,
     dead_code,
     missing_docs,
     non_camel_case_types,

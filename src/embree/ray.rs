@@ -65,7 +65,7 @@ pub struct Hit1 {
     pub instance_id: u32,
     /// Which one of an array of instances; only Embree 4 writes it.
     #[cfg(embree4)]
-    instance_primitive_id: u32,
+    pub(super) instance_primitive_id: u32,
 }
 
 impl Hit1 {

@@ -88,6 +88,7 @@ impl SceneBuilder {
         let scene = Scene {
             raw,
             device,
+            options,
             geometries,
         };
         let flags = [
@@ -128,6 +129,7 @@ impl SceneBuilder {
 pub struct Scene {
     raw: raw::RTCScene,
     device: Device,
+    options: BuildOptions,
     geometries: Vec<Geometry>,
 }
 
@@ -161,6 +163,11 @@ impl Scene {
     /// The device the scene was built with; it knows how much memory it holds.
     pub fn device(&self) -> &Device {
         &self.device
+    }
+
+    /// How the scene was built.
+    pub fn options(&self) -> BuildOptions {
+        self.options
     }
 
     /// Whether everything traced so far can be relied on. To be asked after a batch of calls, which

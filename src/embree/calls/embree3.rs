@@ -25,6 +25,21 @@ fn context(coherence: Coherence) -> raw::RTCIntersectContext {
     }
 }
 
+/// The context of a call that asks for occlusion.
+///
+/// Debian's build of Embree 3.13.5 can hang for ever, or read beyond its stack, when coherent packets
+/// of 16 rays, or streams of them, are tested for occlusion in a scene both robust and compact on a
+/// processor with AVX-512: the compiler keeps a mask of 16 bits and reads 64 back. Such scenes are
+/// therefore traced as if the rays were incoherent; the answer is the same.
+fn occlusion_context(scene: &Scene, coherence: Coherence) -> raw::RTCIntersectContext {
+    let options = scene.options();
+    if options.robust && options.compact {
+        context(Coherence::Incoherent)
+    } else {
+        context(coherence)
+    }
+}
+
 pub fn intersect1(scene: &Scene, ray_hit: &mut RayHit1, coherence: Coherence) {
     // SAFETY: see the module `calls`.
     unsafe {
@@ -38,7 +53,13 @@ pub fn intersect1(scene: &Scene, ray_hit: &mut RayHit1, coherence: Coherence) {
 
 pub fn occluded1(scene: &Scene, ray: &mut Ray1, coherence: Coherence) {
     // SAFETY: see the module `calls`.
-    unsafe { raw::rtcOccluded1(scene.raw(), &mut context(coherence), (&raw mut *ray).cast()) }
+    unsafe {
+        raw::rtcOccluded1(
+            scene.raw(),
+            &mut occlusion_context(scene, coherence),
+            (&raw mut *ray).cast(),
+        )
+    }
 }
 
 pub fn intersect_packet<const K: usize>(
@@ -67,7 +88,11 @@ pub fn occluded_packet<const K: usize>(
     coherence: Coherence,
 ) {
     const { assert!(K == 4 || K == 8 || K == 16, "packets have 4, 8 or 16 rays") }
-    let (valid, scene, context) = (valid.as_ptr(), scene.raw(), &mut context(coherence));
+    let (valid, scene, context) = (
+        valid.as_ptr(),
+        scene.raw(),
+        &mut occlusion_context(scene, coherence),
+    );
     let packet = &raw mut *packet;
     // SAFETY: see the module `calls`; the width is that of the function called.
     unsafe {
@@ -130,7 +155,14 @@ pub fn occluded_stream(scene: &Scene, rays: &mut Rays, coherence: Coherence) {
     let len = rays.len() as u32;
     let pointers = ray_pointers(rays);
     // SAFETY: see the module `calls`; all arrays have `len` elements, which fits 32 bits.
-    unsafe { raw::rtcOccludedNp(scene.raw(), &mut context(coherence), &pointers, len) }
+    unsafe {
+        raw::rtcOccludedNp(
+            scene.raw(),
+            &mut occlusion_context(scene, coherence),
+            &pointers,
+            len,
+        )
+    }
 }
 
 pub fn intersect_stream_1m(scene: &Scene, rays: &mut [RayHit1], coherence: Coherence) {
@@ -154,7 +186,7 @@ pub fn occluded_stream_1m(scene: &Scene, rays: &mut [Ray1], coherence: Coherence
         unsafe {
             raw::rtcOccluded1M(
                 scene.raw(),
-                &mut context(coherence),
+                &mut occlusion_context(scene, coherence),
                 part.as_mut_ptr().cast(),
                 part.len() as u32,
                 size_of::<Ray1>(),
@@ -195,7 +227,7 @@ pub fn occluded_stream_nm<const K: usize>(
         unsafe {
             raw::rtcOccludedNM(
                 scene.raw(),
-                &mut context(coherence),
+                &mut occlusion_context(scene, coherence),
                 part.as_mut_ptr().cast(),
                 K as u32,
                 part.len() as u32,
