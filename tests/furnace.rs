@@ -111,7 +111,7 @@ impl Case {
         );
         println!("{what}");
         assert!(error <= largest_error, "{what}: too noisy to say anything");
-        assert!(deviation.abs() <= 4.0 * error + 1e-5, "{what}");
+        assert!(deviation.abs() <= 4.0 * error + 2e-6, "{what}");
     }
 }
 
@@ -151,6 +151,16 @@ fn ninety_nine_in_a_hundred_are_reflected() {
 #[test]
 fn nine_hundred_and_ninety_nine_in_a_thousand_are_reflected() {
     every_strategy(0.999, 2, 0.04);
+}
+
+/// With paths of two segments nothing is random but the light that the wall sends itself, which is known within
+/// millionths: shadow rays that the curved wall itself stops, where they graze it, would show.
+#[test]
+fn the_wall_does_not_shade_itself() {
+    for reflectance in [0.5, 0.9] {
+        let case = Case::new(StrategyKind::FixedDepth, Some(2), 256);
+        case.check(reflectance, ColourMode::Rgb, 3e-6);
+    }
 }
 
 #[test]
