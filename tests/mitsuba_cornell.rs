@@ -168,12 +168,12 @@ fn every_strategy() -> [Walk; 6] {
         // light is lost, and some leaves through the open front.
         StrategyKind::FixedDepth => Walk {
             max_depth: Some(48),
-            ..Walk::new(kind, 10)
+            ..Walk::new(kind, 14)
         },
         StrategyKind::Roulette
         | StrategyKind::ThroughputRoulette
-        | StrategyKind::ParticleFilter => Walk::new(kind, 10),
-        StrategyKind::GoWithTheWinners | StrategyKind::PaperParticleFilter => Walk::new(kind, 6),
+        | StrategyKind::ParticleFilter => Walk::new(kind, 16),
+        StrategyKind::GoWithTheWinners | StrategyKind::PaperParticleFilter => Walk::new(kind, 10),
     })
 }
 
