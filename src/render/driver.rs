@@ -143,6 +143,11 @@ impl Render {
         &self.settings
     }
 
+    /// Takes another seed for the next run: the same image with other noise, without building anything again.
+    pub fn reseed(&mut self, seed: u64) {
+        self.settings.seed = seed;
+    }
+
     /// How long the acceleration structure took to build.
     pub fn build_time(&self) -> Duration {
         self.build_time

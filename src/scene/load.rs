@@ -65,7 +65,8 @@ pub(super) struct Loader<'d> {
     emitters: Vec<Emitter>,
     /// Materials by their object in the file, so that a bsdf that many shapes refer to is loaded once.
     known_materials: HashMap<*const Object, MaterialId>,
-    default_material: Option<MaterialId>,
+    /// What shapes without a bsdf are made of: those that do not emit, and those that do.
+    default_materials: [Option<MaterialId>; 2],
 }
 
 impl<'d> Loader<'d> {
@@ -76,7 +77,7 @@ impl<'d> Loader<'d> {
             materials: Vec::new(),
             emitters: Vec::new(),
             known_materials: HashMap::new(),
-            default_material: None,
+            default_materials: [None; 2],
         }
     }
 
@@ -148,22 +149,30 @@ impl<'d> Loader<'d> {
         MaterialId(self.materials.len() as u32 - 1)
     }
 
+    /// What a shape without a bsdf is made of, as in Mitsuba: a lamp reflects nothing, and any other shape is diffuse
+    /// with the default reflectance.
+    fn default_material(&mut self, is_light: bool) -> MaterialId {
+        let known = self.default_materials[usize::from(is_light)];
+        known.unwrap_or_else(|| {
+            let id = self.add_material(if is_light {
+                Material::black()
+            } else {
+                Material::default()
+            });
+            self.default_materials[usize::from(is_light)] = Some(id);
+            id
+        })
+    }
+
     fn shape(&mut self, object: &Object) -> Result<(), SceneError> {
         let mut geometry = shapes::load(object, self)?;
+        let light = object.child(Class::Emitter)?;
         let material = match object.child(Class::Bsdf)? {
             Some(child) => self.material(&child.object)?,
-            // As in Mitsuba, a shape without a bsdf is diffuse with the default reflectance.
-            None => match self.default_material {
-                Some(id) => id,
-                None => {
-                    let id = self.add_material(Material::default());
-                    self.default_material = Some(id);
-                    id
-                }
-            },
+            None => self.default_material(light.is_some()),
         };
         let id = ShapeId(self.shapes.len() as u32);
-        let emitter = match object.child(Class::Emitter)? {
+        let emitter = match light {
             Some(child) => {
                 let light = emitters::load_area(&child.object, id)?;
                 if let Geometry::Triangles(mesh) = &mut geometry

@@ -6,6 +6,7 @@ use super::batch::{CameraPaths, ShadowRays, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
 use crate::sampling::{RandomStream, power_heuristic};
+use crate::scene::LightSample;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Shadow rays end this share of their length before the light, so that they do not meet it.
@@ -49,7 +50,7 @@ pub(super) fn sample_lights<C: Colour>(
             continue;
         }
         let origin = leave_surface(position, vertices.geometric_normal[i], light.direction);
-        let (direction, length) = towards(position, origin, light.direction, light.distance);
+        let (direction, length) = towards(position, origin, &light);
         shadow.rays.set(
             shadow.path.len(),
             origin.into(),
@@ -64,17 +65,24 @@ pub(super) fn sample_lights<C: Colour>(
 }
 
 /// Unit direction and distance from the `origin` of a shadow ray to the light that was drawn from `position`.
+///
+/// The ray ends off the light's surface, as it starts off its own: a light that is curved, or that lights itself, would
+/// otherwise be in its own way where the ray grazes it.
 #[inline]
-fn towards(position: Vec3, origin: Vec3, direction: Vec3, distance: f32) -> (Vec3, f32) {
-    if distance == f32::INFINITY {
-        return (direction, distance);
+fn towards<S>(position: Vec3, origin: Vec3, light: &LightSample<S>) -> (Vec3, f32) {
+    if light.distance == f32::INFINITY {
+        return (light.direction, light.distance);
     }
-    let offset = position + direction * distance - origin;
+    let target = match &light.surface {
+        Some(point) => leave_surface(point.position, point.geometric_normal, -light.direction),
+        None => position + light.direction * light.distance,
+    };
+    let offset = target - origin;
     let length = offset.length();
     if length > 0.0 {
         (offset / length, length)
     } else {
-        (direction, 0.0)
+        (light.direction, 0.0)
     }
 }
 

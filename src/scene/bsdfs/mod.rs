@@ -16,7 +16,7 @@ use glam::Vec3;
 use super::error::SceneError;
 use super::xml::Object;
 use crate::sampling::SolidAnglePdf;
-use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
 
 /// How the two sides of a surface scatter light.
 ///
@@ -31,10 +31,22 @@ pub struct Material {
 }
 
 impl Default for Material {
-    /// What a shape without a bsdf is made of.
+    /// What a shape without a bsdf is made of, unless it emits.
     fn default() -> Self {
         Self {
             front: Model::Diffuse(DiffuseMaterial::default()),
+            back: None,
+        }
+    }
+}
+
+impl Material {
+    /// What a shape that emits and has no bsdf is made of: it reflects nothing.
+    pub fn black() -> Self {
+        Self {
+            front: Model::Diffuse(DiffuseMaterial {
+                reflectance: SpectralCurve::BLACK,
+            }),
             back: None,
         }
     }

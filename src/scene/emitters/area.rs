@@ -70,6 +70,7 @@ impl AreaLight {
         (!radiance.is_black()).then(|| LightSample {
             direction: sample.direction,
             distance: sample.distance,
+            surface: Some(sample.point),
             weight: radiance / sample.pdf.0,
             pdf: Some(sample.pdf),
         })

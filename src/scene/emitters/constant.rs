@@ -46,6 +46,7 @@ impl ConstantLight {
         LightSample {
             direction: warp::sphere(u),
             distance: f32::INFINITY,
+            surface: None,
             weight: self.radiance::<C>(wavelengths) / self.pdf().0,
             pdf: Some(self.pdf()),
         }

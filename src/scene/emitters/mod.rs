@@ -11,6 +11,7 @@ pub use point::PointLight;
 use glam::Vec3;
 
 use super::error::SceneError;
+use super::shapes::SurfacePoint;
 use super::xml::Object;
 use super::{Shape, ShapeId};
 use crate::sampling::SolidAnglePdf;
@@ -56,6 +57,8 @@ pub struct LightSample<S> {
     pub direction: Vec3,
     /// Distance to the light in scene units; infinite for the surroundings.
     pub distance: f32,
+    /// The point of the light, where it has a surface.
+    pub surface: Option<SurfacePoint>,
     /// Radiance over density; for a point light, intensity over squared distance.
     pub weight: S,
     /// The density of `direction`; `None` where only this way of sampling can find the light (a point light).

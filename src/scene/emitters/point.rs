@@ -53,6 +53,7 @@ impl PointLight {
         (distance > 0.0).then(|| LightSample {
             direction: offset / distance,
             distance,
+            surface: None,
             weight: C::evaluate(&self.intensity, wavelengths) / (distance * distance),
             pdf: None,
         })

@@ -5,7 +5,7 @@
 //! | `center` | point | centre | 0, 0, 0 |
 //! | `radius` | float | radius | 1 |
 //! | `flip_normals` | boolean | let the inner side be the outer one | false |
-//! | `to_world` | transform | moves, turns and uniformly scales the sphere | identity |
+//! | `to_world` | transform | moves, turns and uniformly scales the sphere; one that mirrors flips its normals | identity |
 //!
 //! As a light it is sampled by the cone of directions under which it is seen from outside, and by area from inside.
 
@@ -47,7 +47,7 @@ impl Sphere {
         Ok(Self {
             center: placement.to_world.transform_point3(center).as_vec3(),
             radius: radius as f32,
-            flip_normals: placement.flip_normals,
+            flip_normals: placement.flip_normals != (placement.to_world.determinant() < 0.0),
         })
     }
 

@@ -1,0 +1,192 @@
+//! Little scenes against Mitsuba 3: everything that the paper's scenes do not use.
+//!
+//! The scenes are `tests/scenes/*.xml`; their `$name`s make several cases of each.
+
+mod support;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use cohort::render::{ColourMode, Settings};
+use cohort::scene::{LoadOptions, ReconstructionFilter, Scene};
+use cohort::transport::DirectLight;
+
+use support::comparison::Comparison;
+use support::files;
+use support::mitsuba::{Mitsuba, Reference};
+use support::render::replicates;
+
+/// Images of ours, and samples per pixel of each: two passes.
+const OURS: (u64, u32) = (24, 20);
+/// Images of Mitsuba, and samples per pixel of each.
+const REFERENCE: (u32, u32) = (48, 32);
+/// The same where a filter is wider than a pixel. Mitsuba then divides by the sum of the weights that a pixel got, and
+/// such a ratio is biased where the image has an edge, by a share that falls with the number of samples.
+const FILTERED_REFERENCE: (u32, u32) = (16, 128);
+/// Side of the blocks in pixels.
+const BLOCK: usize = 4;
+
+/// A scene of `tests/scenes` with values for its `$name`s.
+struct Case {
+    scene: &'static str,
+    definitions: Vec<(String, String)>,
+    colour: ColourMode,
+}
+
+impl Case {
+    fn new(scene: &'static str, definitions: &[(&str, &str)]) -> Self {
+        Self {
+            scene,
+            definitions: definitions
+                .iter()
+                .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
+                .collect(),
+            colour: ColourMode::Rgb,
+        }
+    }
+
+    fn in_wavelengths(self) -> Self {
+        Self {
+            colour: ColourMode::Spectral,
+            ..self
+        }
+    }
+
+    fn path(&self) -> PathBuf {
+        files::of_project(&format!("tests/scenes/{}.xml", self.scene))
+    }
+
+    fn load(&self) -> Arc<Scene> {
+        let options = LoadOptions {
+            definitions: self.definitions.clone(),
+            models: None,
+        };
+        let scene = Scene::load(self.path(), &options);
+        Arc::new(scene.unwrap_or_else(|error| panic!("{error}")))
+    }
+
+    /// Everything that scenes of this folder read.
+    fn inputs(&self) -> Vec<PathBuf> {
+        let names = ["fragments/floor.xml", "octahedron.obj", "tent.obj"];
+        names
+            .map(|name| files::of_project(&format!("tests/scenes/{name}")))
+            .to_vec()
+    }
+
+    fn settings(&self) -> Settings {
+        Settings {
+            colour: self.colour,
+            ..Settings::default()
+        }
+    }
+
+    /// Compares our image, by the strategy that decides by default, with Mitsuba's.
+    fn check(&self) {
+        let what = format!(
+            "{} {:?}, {}",
+            self.scene,
+            self.definitions,
+            self.colour.name()
+        );
+        let Some(mitsuba) = Mitsuba::find(&what) else {
+            return;
+        };
+        let scene = self.load();
+        let path = self.path();
+        let (seeds, spp) = match scene.film.filter {
+            ReconstructionFilter::Box => REFERENCE,
+            _ => FILTERED_REFERENCE,
+        };
+        let reference = Reference {
+            scene: &path,
+            inputs: &self.inputs(),
+            definitions: &self.definitions,
+            colour: self.colour,
+            max_depth: None,
+            seeds,
+            spp,
+        };
+        let reference = mitsuba.render(&reference, scene.film.crop.size);
+        let ours = replicates(&scene, self.settings(), OURS.0, OURS.1);
+        Comparison::new(what, &ours, &reference, BLOCK).assert();
+    }
+}
+
+macro_rules! cases {
+    ($($(#[$attribute:meta])* $name:ident: $scene:literal $([$($key:literal = $value:expr),*])? $($wavelengths:ident)?;)*) => {$(
+        #[test]
+        $(#[$attribute])*
+        fn $name() {
+            Case::new($scene, &[$($(($key, $value)),*)?])$(.$wavelengths())?.check();
+        }
+    )*};
+}
+
+cases! {
+    sphere_light_from_outside: "sphere-light";
+    sphere_light_in_wavelengths: "sphere-light" in_wavelengths;
+    sphere_light_from_inside: "inside-a-light";
+    cylinder_lights: "cylinder-light";
+    disk_cube_and_mesh_lights: "flat-lights";
+    point_lights: "point-lights";
+    point_lights_in_wavelengths: "point-lights" in_wavelengths;
+    many_emitters: "many-emitters";
+    many_emitters_in_wavelengths: "many-emitters" in_wavelengths;
+    emission_only: "many-emitters" ["depth" = "1"];
+    direct_light_only: "many-emitters" ["depth" = "2"];
+    one_bounce_of_indirect_light: "many-emitters" ["depth" = "3"];
+    no_depth_at_all: "many-emitters" ["depth" = "0"];
+    hidden_emitters: "many-emitters" ["hide" = "true"];
+    hidden_emitters_of_all_shapes: "flat-lights" ["hide" = "true"];
+
+    two_sides: "sides";
+    two_sides_flipped: "sides" ["flip" = "true"];
+    two_sides_mirrored: "sides" ["mirror" = "-1"];
+    two_sides_mirrored_and_flipped: "sides" ["mirror" = "-1", "flip" = "true"];
+
+    smooth_meshes: "meshes";
+    flat_meshes: "meshes" ["flat" = "true"];
+
+    box_filter: "camera";
+    tent_filter: "camera" ["filter" = "tent"];
+    gaussian_filter: "camera" ["filter" = "gaussian"];
+    mitchell_filter: "camera" ["filter" = "mitchell"];
+    gaussian_filter_beyond_the_border: "camera" ["filter" = "gaussian", "border" = "true"];
+    crop_window: "camera" ["crop_x" = "13", "crop_y" = "7", "crop_width" = "30", "crop_height" = "21"];
+    crop_window_with_a_wide_filter:
+        "camera" ["crop_x" = "13", "crop_y" = "7", "crop_width" = "30", "crop_height" = "21", "filter" = "gaussian"];
+    field_of_view_along_y: "camera" ["axis" = "y"];
+    field_of_view_along_the_diagonal: "camera" ["axis" = "diagonal"];
+    field_of_view_along_the_smaller_side: "camera" ["axis" = "smaller"];
+    field_of_view_along_the_larger_side: "camera" ["axis" = "larger", "width" = "36", "height" = "52"];
+    shifted_principal_point: "camera" ["shift_x" = "0.1", "shift_y" = "-0.2"];
+    shifted_principal_point_in_a_crop_window:
+        "camera" ["shift_x" = "0.1", "crop_x" = "20", "crop_width" = "33", "crop_y" = "4", "crop_height" = "30"];
+    near_and_far_clip: "camera" ["near" = "6.2", "far" = "8"];
+    hidden_surroundings: "camera" ["hide" = "true"];
+
+    colours: "colours";
+    colours_in_wavelengths: "colours" in_wavelengths;
+}
+
+/// Lights whose vertex normals are not those of their faces: Mitsuba converts densities by the wrong one of the two
+/// (`DirectionSample::n` is the shading normal there), so that its own direct light is wrong. What is right is what
+/// paths find that meet the light by chance, which use no density of the light.
+#[test]
+fn smooth_lights_are_the_same_however_they_are_found() {
+    let case = Case::new("smooth-light", &[]);
+    let scene = case.load();
+    let by_chance = Settings {
+        direct_light: DirectLight::Off,
+        ..case.settings()
+    };
+    let found = replicates(&scene, by_chance, 24, 160);
+    let sought = replicates(&scene, case.settings(), OURS.0, OURS.1);
+    Comparison::new(
+        "smooth-light: sought and found by chance",
+        &sought,
+        &found,
+        BLOCK,
+    )
+    .assert();
+}

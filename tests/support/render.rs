@@ -1,0 +1,66 @@
+//! Rendering a scene many times.
+
+use std::num::NonZeroU32;
+use std::sync::Arc;
+
+use cohort::render::{Budget, Render, Settings, StopFlag};
+use cohort::scene::Scene;
+
+use super::replicates::Replicates;
+
+/// A render with `settings` of `seeds` images with `spp` samples per pixel each.
+///
+/// On the way it proves of every image that no sample was dropped, and, if there are samples enough for the film to
+/// know the noise of its pixels, that this is the noise which the images do have.
+pub fn replicates(scene: &Arc<Scene>, settings: Settings, seeds: u64, spp: u32) -> Replicates {
+    let what = format!("{} {:?}", scene.name, settings.strategy);
+    let budget = Budget::SamplesPerPixel(NonZeroU32::new(spp).expect("there are samples"));
+    let settings = Settings { budget, ..settings };
+    let mut render = Render::new(Arc::clone(scene), settings).expect("the scene can be rendered");
+    let mut replicates = Replicates::new(scene.film.crop.size);
+    let mut believed = Some([0.0; 3]);
+    for seed in 0..seeds {
+        render.reseed(seed);
+        let outcome = render.run(&StopFlag::new(), &());
+        assert_eq!(
+            (
+                outcome.statistics.dropped.total(),
+                outcome.statistics.walk.dropped()
+            ),
+            (0, 0),
+            "{what}: dropped samples: {:?} {:?}",
+            outcome.statistics.dropped,
+            outcome.statistics.walk
+        );
+        if let (Some(sum), Some(variance)) = (&mut believed, outcome.film.variance()) {
+            let mean = variance.mean();
+            (0..3).for_each(|channel| sum[channel] += mean[channel] / seeds as f64);
+        } else {
+            believed = None;
+        }
+        replicates.push(outcome.film.image().pixels().to_vec());
+    }
+    if let Some(believed) = believed {
+        check_believed_noise(&what, &replicates, believed);
+    }
+    replicates
+}
+
+/// Compares the variance of pixels that the film believed in, in the mean over the image, with the one between images.
+fn check_believed_noise(what: &str, replicates: &Replicates, believed: [f64; 3]) {
+    for (channel, pixels) in replicates.blocks(1).iter().enumerate() {
+        let per_image = replicates.count() as f64;
+        let seen = pixels
+            .iter()
+            .map(|pixel| pixel.variance * per_image)
+            .sum::<f64>()
+            / pixels.len() as f64;
+        let ratio = believed[channel] / seen;
+        // Of some thousand pixels and a dozen images or more; rare bright samples make up the rest.
+        assert!(
+            (0.8..1.25).contains(&ratio) || seen < 1e-12,
+            "{what}: channel {channel}: the film says that the variance of a pixel is {}, and it is {seen}",
+            believed[channel]
+        );
+    }
+}
