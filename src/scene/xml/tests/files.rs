@@ -105,7 +105,7 @@ fn cyclic_and_missing_includes_are_errors() {
     );
 
     let main = SceneSource::File("no/such/scene.xml".into());
-    let message = parse(&main, &[]).unwrap_err().to_string();
+    let message = parse(&main, &[], &[]).unwrap_err().to_string();
     assert!(
         message.starts_with("cannot read the scene no/such/scene.xml: "),
         "{message}"
@@ -159,11 +159,11 @@ fn files_are_found_in_paths_then_beside_the_scene() {
 
 #[test]
 fn built_in_scenes_have_a_name() {
-    let source = SceneSource::BuiltIn {
+    let source = SceneSource::Text {
         name: "knot",
         text: "<scene version=\"3.0.0\"><blubb/></scene>",
     };
-    let message = parse(&source, &[]).unwrap_err().to_string();
+    let message = parse(&source, &[], &[]).unwrap_err().to_string();
     assert!(
         message.starts_with("<knot>:1:24: unknown element <blubb>; "),
         "{message}"

@@ -39,7 +39,7 @@ impl Files {
             .iter()
             .map(|(name, value)| (name.to_string(), value.to_string()))
             .collect();
-        parse(&SceneSource::File(self.main.clone()), &definitions)
+        parse(&SceneSource::File(self.main.clone()), &definitions, &[])
     }
 
     /// The error's message with the directory taken out.
@@ -91,7 +91,7 @@ fn reads_every_scene_of_the_suite() {
     }
     assert!(paths.len() > 15, "the suite has only {paths:?}");
     for path in paths {
-        let document = parse(&SceneSource::File(path.clone()), &[]).unwrap();
+        let document = parse(&SceneSource::File(path.clone()), &[], &[]).unwrap();
         assert!(!document.root.children(Class::Integrator).is_empty());
         assert!(
             !document.root.children(Class::Sensor).is_empty(),

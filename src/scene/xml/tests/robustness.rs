@@ -15,8 +15,9 @@ const SCENE: &str = r#"<scene version="3.0.0"><default name="a" value="1"/><path
 /// Parses without asking what comes out.
 fn try_parse(text: &str) {
     let mut parser = Parser {
-        definitions: definitions::Definitions::new(&[]).unwrap(),
+        definitions: definitions::Definitions::new(&[], &[]).unwrap(),
         drafts: references::Drafts::default(),
+        included_files: 0,
     };
     let search_path = search_path::SearchPath::working_directory();
     let mut file = File::main(Path::new("<test>"), search_path);
@@ -27,11 +28,11 @@ fn try_parse(text: &str) {
 
 #[test]
 fn the_mutated_scene_is_right_to_begin_with() {
-    let source = SceneSource::BuiltIn {
+    let source = SceneSource::Text {
         name: "test",
         text: SCENE,
     };
-    parse(&source, &[]).unwrap();
+    parse(&source, &[], &[]).unwrap();
 }
 
 #[test]
