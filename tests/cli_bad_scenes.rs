@@ -139,7 +139,7 @@ fn values_out_of_range() {
         (
             r#"<rfilter type="box"/>"#,
             r#"<rfilter type="tent"><float name="radius" value="1e9"/></rfilter>"#,
-            "it must be above 0 and at most 64",
+            "it must be from 0.001 to 64",
         ),
         (
             r#"<rfilter type="box"/>"#,

@@ -271,14 +271,13 @@ impl ReconstructionFilter {
     fn load(object: &Object) -> Result<Self, SceneError> {
         let positive = |name, default| -> Result<f32, SceneError> {
             let value = object.float_or(name, default)? as f32;
-            // A filter wider than this is a mistake, and its tables would be large.
-            let range = 0.0..=64.0;
-            if value > 0.0 && range.contains(&value) {
+            // A filter wider than this is a mistake, and its tables would be large; a far narrower one is lost to rounding.
+            if (0.001..=64.0).contains(&value) {
                 return Ok(value);
             }
             Err(object.parameter_error(
                 name,
-                format!("`{name}` is {value}; it must be above 0 and at most 64"),
+                format!("`{name}` is {value}; it must be from 0.001 to 64"),
             ))
         };
         // Mitchell and Netravali study both in [0, 1]; far beyond, the filter's lobes cancel it.
