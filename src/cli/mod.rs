@@ -3,8 +3,9 @@
 mod models;
 mod output;
 mod render;
+mod report;
+mod strategy_args;
 
-use std::error::Error;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -38,7 +39,7 @@ pub fn run() -> ExitCode {
             .map_err(Into::into),
     };
     result.unwrap_or_else(|error| {
-        report(&*error);
+        report::tell(error);
         ExitCode::FAILURE
     })
 }
@@ -50,9 +51,4 @@ fn version() -> String {
         Err(error) => format!("Embree not usable: {error}"),
     };
     format!("{} ({embree})", env!("CARGO_PKG_VERSION"))
-}
-
-/// Prints an error; its causes are part of its message.
-fn report(error: &dyn Error) {
-    eprintln!("cohort: {error}");
 }

@@ -17,6 +17,8 @@ pub struct OutputFiles {
 pub enum OutputError {
     #[error("{}: an image is written as EXR with a PNG beside it; name a file that ends in .exr", .0.display())]
     Extension(PathBuf),
+    #[error("{}: this is a folder; name a file in it that ends in .exr", .0.display())]
+    Folder(PathBuf),
     #[error(transparent)]
     File(#[from] FilmFileError),
 }
@@ -25,19 +27,19 @@ impl OutputFiles {
     /// The files for `output`, which ends in `.exr` or has no extension. Both are proven to be writable, so that no time
     /// is spent on an image that would be lost.
     pub fn check(output: &Path) -> Result<Self, OutputError> {
-        match output.extension() {
-            Some(extension) if extension.eq_ignore_ascii_case("exr") => {}
-            None => {}
-            Some(_) => return Err(OutputError::Extension(output.to_owned())),
+        if output.is_dir() {
+            return Err(OutputError::Folder(output.to_owned()));
         }
-        let files = Self {
-            exr: output.with_extension("exr"),
-            png: output.with_extension("png"),
+        let exr = match output.extension() {
+            Some(extension) if extension.eq_ignore_ascii_case("exr") => output.to_owned(),
+            None => output.with_extension("exr"),
+            Some(_) => return Err(OutputError::Extension(output.to_owned())),
         };
-        for path in [&files.exr, &files.png] {
+        let png = output.with_extension("png");
+        for path in [&exr, &png] {
             WholeFile::create(path)?;
         }
-        Ok(files)
+        Ok(Self { exr, png })
     }
 }
 
@@ -49,4 +51,38 @@ pub fn peak_memory() -> Option<f64> {
         .find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes / 1024.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_files_are_named_after_the_output() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = |output: &str| {
+            let files = OutputFiles::check(&folder.path().join(output)).unwrap();
+            [files.exr, files.png].map(|path| path.file_name().unwrap().to_owned())
+        };
+        assert_eq!(names("a.exr"), ["a.exr", "a.png"]);
+        assert_eq!(names("a.EXR"), ["a.EXR", "a.png"]);
+        assert_eq!(names("a"), ["a.exr", "a.png"]);
+        assert_eq!(names("a.b.exr"), ["a.b.exr", "a.b.png"]);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_place_for_one_of_the_two_is_not_enough() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("a.png")).unwrap();
+        let refused = OutputFiles::check(&folder.path().join("a.exr")).unwrap_err();
+        assert!(refused.to_string().contains("a.png"), "{refused}");
+        let refused = OutputFiles::check(folder.path()).unwrap_err();
+        assert!(matches!(refused, OutputError::Folder(_)), "{refused}");
+    }
+
+    #[test]
+    fn memory_has_been_used() {
+        assert!(peak_memory().is_none_or(|mib| mib > 0.5));
+    }
 }

@@ -35,6 +35,13 @@ impl WholeFile {
                 "it is a folder",
             )));
         }
+        let is_missing = |folder: &Path| folder != Path::new("") && !folder.exists();
+        if path.parent().is_some_and(is_missing) {
+            return Err(refuse(io::Error::new(
+                io::ErrorKind::NotFound,
+                "its folder does not exist",
+            )));
+        }
         let mut temporary_name = std::ffi::OsString::from(".");
         temporary_name.push(name);
         temporary_name.push(format!(".{}.partial", std::process::id()));

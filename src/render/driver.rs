@@ -1,6 +1,6 @@
 //! Passes over tiles, until the budget is used up or somebody asks to stop.
 
-use std::num::NonZeroU32;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::{Budget, ColourMode, Observer, Progress, Schedule, Settings, StopFlag};
+use super::{Budget, ColourMode, Observer, Progress, Schedule, Settings, StopFlag, memory};
 use crate::embree::{EmbreeError, flush_denormals_to_zero};
 use crate::film::{Film, FilmTile};
 use crate::sampling::StreamKey;
@@ -23,6 +23,9 @@ use crate::walk::FixedDepth;
 /// How often an observer hears of the progress.
 const OBSERVATION_INTERVAL: Duration = Duration::from_millis(100);
 
+/// The most threads that a render takes: more are a mistake.
+pub const MAX_THREADS: usize = 1024;
+
 /// Why a render cannot start.
 #[derive(Debug, Error)]
 pub enum RenderError {
@@ -32,6 +35,23 @@ pub enum RenderError {
     /// The threads could not be started.
     #[error("the rendering threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// More threads than make sense.
+    #[error("{0} threads are too many; there can be from 1 to {MAX_THREADS}")]
+    TooManyThreads(NonZeroUsize),
+    /// An image that does not fit into memory.
+    #[error(
+        "an image of {width} x {height} pixels needs {needed:.1} GiB of memory, and {available:.1} GiB are free; make it smaller or render it in crop windows"
+    )]
+    OutOfMemory {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// GiB that the film and its files need.
+        needed: f64,
+        /// GiB that the system can give.
+        available: f64,
+    },
     /// Paths that never end.
     #[error(
         "the strategy `{}` never ends a path, so it needs a maximal depth (`--max-depth` or `max_depth` of the integrator)",
@@ -101,6 +121,10 @@ impl Render {
         if max_depth.is_none() && settings.strategy.name() == FixedDepth::NAME {
             return Err(RenderError::EndlessPaths);
         }
+        if settings.threads.get() > MAX_THREADS {
+            return Err(RenderError::TooManyThreads(settings.threads));
+        }
+        memory::check(scene.film.crop.size)?;
         let has_delta_light = scene.emitters.iter().any(Emitter::is_delta);
         if has_delta_light && settings.direct_light == DirectLight::Off {
             return Err(RenderError::UnreachableLight);
@@ -123,6 +147,7 @@ impl Render {
         let strategy = std::mem::replace(&mut settings.strategy, Box::new(FixedDepth));
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(settings.threads.get())
+            .thread_name(|index| format!("render {index}"))
             .build()?;
         let engine = Engine::new(scene, accelerator, transport, strategy);
         Ok(Self {

@@ -39,8 +39,18 @@ impl Scene {
     pub fn built_in(options: &LoadOptions) -> Result<Self, SceneError> {
         const NAME: &str = "cornell-knot.xml";
         let text = include_str!("../../scenes/cornell-knot.xml");
-        let source = SceneSource::BuiltIn { name: NAME, text };
+        let source = SceneSource::Text { name: NAME, text };
         Self::load_from(&source, format!("built-in {NAME}"), options)
+    }
+
+    /// Loads a scene from the text of a scene file. The files that it names are looked for in the working directory.
+    ///
+    /// # Errors
+    /// As [`Self::load`]; messages call the text `<scene>`.
+    pub fn from_xml(text: &str, options: &LoadOptions) -> Result<Self, SceneError> {
+        const NAME: &str = "scene";
+        let source = SceneSource::Text { name: NAME, text };
+        Self::load_from(&source, NAME.to_owned(), options)
     }
 
     fn load_from(

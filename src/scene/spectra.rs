@@ -24,7 +24,11 @@ pub(super) fn spectrum(
     };
     let curve = match property {
         SpectrumProperty::Texture(texture) => return Err(texture.unsupported(&[])),
-        SpectrumProperty::Constant(value) => constant(value as f32, quantity),
+        SpectrumProperty::Number(value) => number(value as f32, quantity),
+        SpectrumProperty::Constant(value) => match quantity {
+            Quantity::Reflectance => SpectralCurve::constant_reflectance(value as f32),
+            Quantity::Emission => SpectralCurve::constant_emission(value as f32),
+        },
         SpectrumProperty::Rgb(rgb) => {
             let rgb = rgb.map(|value| value as f32);
             match quantity {
@@ -48,14 +52,16 @@ pub(super) fn spectrum(
         .map_err(|error| object.parameter_error(name, format!("`{name}`: {error}")))
 }
 
-fn constant(value: f32, quantity: Quantity) -> Result<SpectralCurve, CurveError> {
+/// What a plain number means: as in Mitsuba, a number for an emission is the white of sRGB (D65) of that luminance,
+/// unlike a constant `<spectrum>`, whose colour is a little warmer.
+fn number(value: f32, quantity: Quantity) -> Result<SpectralCurve, CurveError> {
     match quantity {
         Quantity::Reflectance => SpectralCurve::constant_reflectance(value),
-        Quantity::Emission => SpectralCurve::constant_emission(value),
+        Quantity::Emission => SpectralCurve::rgb_emission([value; 3]),
     }
 }
 
-/// The colour under `name`, or the constant `default`.
+/// The colour under `name`, or what the number `default` means.
 pub(super) fn spectrum_or(
     object: &Object,
     name: &'static str,
@@ -65,7 +71,7 @@ pub(super) fn spectrum_or(
     match spectrum(object, name, quantity)? {
         Some(curve) => Ok(curve),
         None => {
-            constant(default, quantity).map_err(|error| object.error(format!("`{name}`: {error}")))
+            number(default, quantity).map_err(|error| object.error(format!("`{name}`: {error}")))
         }
     }
 }

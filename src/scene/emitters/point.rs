@@ -36,8 +36,12 @@ impl PointLight {
             (None, None) => DVec3::ZERO,
         };
         object.finish()?;
+        let position = position.as_vec3();
+        if !position.is_finite() {
+            return Err(object.error("the light is too far away for 32-bit coordinates"));
+        }
         Ok(Self {
-            position: position.as_vec3(),
+            position,
             intensity,
         })
     }

@@ -67,8 +67,18 @@ pub enum FilmError {
         height: i64,
     },
     /// Crop window out of the film.
-    #[error("the crop window is not inside the film of {width} x {height} pixels, or it is empty")]
+    #[error(
+        "the crop window of {columns} x {rows} pixels at ({x}, {y}) must have pixels and lie inside the film of {width} x {height}"
+    )]
     Crop {
+        /// First column of the window.
+        x: i64,
+        /// First row of the window.
+        y: i64,
+        /// Columns of the window.
+        columns: i64,
+        /// Rows of the window.
+        rows: i64,
         /// Columns of the film.
         width: u32,
         /// Rows of the film.
@@ -131,8 +141,8 @@ impl FilmDescription {
         );
         let mut film = Self::new(size.0, size.1).map_err(refuse)?;
         let crop = (
-            crop.0.unwrap_or(size.0 - offset.0),
-            crop.1.unwrap_or(size.1 - offset.1),
+            crop.0.unwrap_or(size.0.saturating_sub(offset.0)),
+            crop.1.unwrap_or(size.1.saturating_sub(offset.1)),
         );
         film = film.cropped(offset, crop).map_err(refuse)?;
         film.filter = match object.child(Class::ReconstructionFilter)? {
@@ -160,6 +170,7 @@ impl FilmDescription {
             ..self.clone()
         })
     }
+
     /// An uncropped film of this size with the box filter.
     pub fn new(width: i64, height: i64) -> Result<Self, FilmError> {
         let side = |n: i64| {
@@ -191,7 +202,14 @@ impl FilmDescription {
         };
         let ImageSize { width, height } = self.size;
         if !(fits(offset.0, size.0, width) && fits(offset.1, size.1, height)) {
-            return Err(FilmError::Crop { width, height });
+            return Err(FilmError::Crop {
+                x: offset.0,
+                y: offset.1,
+                columns: size.0,
+                rows: size.1,
+                width,
+                height,
+            });
         }
         self.crop = CropWindow {
             x: offset.0 as u32,
@@ -253,15 +271,23 @@ impl ReconstructionFilter {
     fn load(object: &Object) -> Result<Self, SceneError> {
         let positive = |name, default| -> Result<f32, SceneError> {
             let value = object.float_or(name, default)? as f32;
-            // A filter wider than this is a mistake, and its tables would be large.
-            let range = 0.0..=64.0;
-            if value > 0.0 && range.contains(&value) {
+            // A filter wider than this is a mistake, and its tables would be large; a far narrower one is lost to rounding.
+            if (0.001..=64.0).contains(&value) {
                 return Ok(value);
             }
             Err(object.parameter_error(
                 name,
-                format!("`{name}` is {value}; it must be above 0 and at most 64"),
+                format!("`{name}` is {value}; it must be from 0.001 to 64"),
             ))
+        };
+        // Mitchell and Netravali study both in [0, 1]; far beyond, the filter's lobes cancel it.
+        let cubic = |name| -> Result<f32, SceneError> {
+            let value = object.float_or(name, 1.0 / 3.0)?;
+            if (0.0..=1.0).contains(&value) {
+                return Ok(value as f32);
+            }
+            let message = format!("`{name}` is {value}; it must be from 0 to 1");
+            Err(object.parameter_error(name, message))
         };
         let filter = match object.plugin.as_str() {
             "box" => Self::Box,
@@ -272,8 +298,8 @@ impl ReconstructionFilter {
                 stddev: positive("stddev", 0.5)?,
             },
             "mitchell" => Self::Mitchell {
-                b: object.float_or("B", 1.0 / 3.0)? as f32,
-                c: object.float_or("C", 1.0 / 3.0)? as f32,
+                b: cubic("B")?,
+                c: cubic("C")?,
             },
             _ => return Err(object.unsupported(&["box", "tent", "gaussian", "mitchell"])),
         };
@@ -351,6 +377,7 @@ mod tests {
         assert!(film.clone().cropped((5, 5), (5, 5)).is_ok());
         assert!(film.clone().cropped((5, 5), (6, 5)).is_err());
         assert!(film.clone().cropped((-1, 0), (5, 5)).is_err());
+        assert!(film.clone().cropped((i64::MAX, 0), (i64::MAX, 5)).is_err());
         assert!(film.cropped((0, 0), (0, 5)).is_err());
     }
 }

@@ -102,6 +102,11 @@ pub enum CameraError {
     /// `to_world` scales by zero or is not finite.
     #[error("`to_world` of the camera has no inverse")]
     SingularTransform,
+    /// Rays of the camera would have coordinates that `f32` cannot hold.
+    #[error(
+        "the camera is too far away, or its `to_world` or field of view is too extreme, for 32-bit coordinates"
+    )]
+    OutOfRange,
 }
 
 /// A pinhole camera.
@@ -174,13 +179,22 @@ impl Perspective {
         if !(to_world.is_finite() && determinant != 0.0 && determinant.is_finite()) {
             return Err(CameraError::SingularTransform);
         }
-        Ok(Self {
+        let camera = Self {
             to_world,
             field_of_view,
             near,
             far,
             principal_point_offset,
-        })
+        };
+        let square = ImageSize {
+            width: 1,
+            height: 1,
+        };
+        let Projection { origin, corner, .. } = camera.project(square);
+        if !(origin.is_finite() && corner.length_squared().is_normal()) {
+            return Err(CameraError::OutOfRange);
+        }
+        Ok(camera)
     }
 
     /// The camera in front of a film of this size, ready to make rays.
@@ -308,6 +322,23 @@ mod tests {
                 Perspective::new(DMat4::IDENTITY, fov(degrees), (near, far), Vec2::ZERO).is_err()
             );
         }
-        assert!(Perspective::new(DMat4::ZERO, fov(40.0), (1.0, 2.0), Vec2::ZERO).is_err());
+        for (to_world, error) in [
+            (DMat4::ZERO, CameraError::SingularTransform),
+            (
+                DMat4::from_translation(DVec3::splat(1e40)),
+                CameraError::OutOfRange,
+            ),
+            (
+                DMat4::from_scale(DVec3::splat(1e-30)),
+                CameraError::OutOfRange,
+            ),
+            (
+                DMat4::from_scale(DVec3::splat(1e25)),
+                CameraError::OutOfRange,
+            ),
+        ] {
+            let camera = Perspective::new(to_world, fov(40.0), (1.0, 2.0), Vec2::ZERO);
+            assert_eq!(camera, Err(error));
+        }
     }
 }

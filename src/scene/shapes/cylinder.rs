@@ -54,10 +54,10 @@ impl Cylinder {
             radius: radius as f32,
             flip_normals: placement.flip_normals,
         };
-        if cylinder.area() > 0.0 {
-            return Ok(cylinder);
+        if start == end {
+            return Err(object.error("the ends `p0` and `p1` of the cylinder coincide"));
         }
-        Err(object.error("the ends `p0` and `p1` of the cylinder coincide"))
+        Ok(cylinder)
     }
 
     /// The nearest hit with a distance in (`near`, `far`), solved in double precision.

@@ -10,8 +10,6 @@ use glam::{DVec3, Vec3};
 use super::Placement;
 use super::{HitCoordinates, ShapeSample, SurfacePoint};
 use crate::sampling::warp;
-use crate::scene::error::SceneError;
-use crate::scene::xml::Object;
 
 /// An ellipse in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,20 +36,16 @@ pub struct DiskHit {
 }
 
 impl Disk {
-    pub(super) fn load(placement: &Placement, object: &Object) -> Result<Self, SceneError> {
+    pub(super) fn load(placement: &Placement) -> Self {
         let axis = |local: DVec3| placement.to_world.transform_vector3(local);
         let (axis_u, axis_v) = (axis(DVec3::X), axis(DVec3::Y));
         let turned = axis_u.cross(axis_v).dot(placement.normals() * DVec3::Z) < 0.0;
-        let disk = Self {
+        Self {
             center: placement.to_world.transform_point3(DVec3::ZERO).as_vec3(),
             axis_u: axis_u.as_vec3(),
             axis_v: axis_v.as_vec3(),
             flip_normals: placement.flip_normals != turned,
-        };
-        if disk.area() > 0.0 {
-            return Ok(disk);
         }
-        Err(object.parameter_error("to_world", "`to_world` leaves the disk without an area"))
     }
 
     /// The unit normal of the side where the axes turn counter-clockwise.

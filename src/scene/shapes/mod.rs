@@ -35,12 +35,12 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, Sce
         flip_normals,
     };
     placement.check(object)?;
-    match object.plugin.as_str() {
+    let geometry = match object.plugin.as_str() {
         "obj" | "ply" => mesh_file::load(object, &placement, loader),
         "rectangle" => Triangles::place(rectangle::rectangle(), &placement, object),
         "cube" => Triangles::place(cube::cube(), &placement, object),
         "sphere" => Sphere::load(object, &placement).map(Geometry::Sphere),
-        "disk" => Disk::load(&placement, object).map(Geometry::Disk),
+        "disk" => Ok(Geometry::Disk(Disk::load(&placement))),
         "cylinder" => Cylinder::load(object, &placement).map(Geometry::Cylinder),
         _ => Err(object.unsupported(&[
             "obj",
@@ -51,8 +51,18 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, Sce
             "disk",
             "cylinder",
         ])),
+    }?;
+    if geometry.is_within_reach() {
+        return Ok(geometry);
     }
+    Err(object.error(format!(
+        "this `{}` is too large, too small or too far away: coordinates must be at most {FARTHEST:e} and areas representable in 32 bits",
+        object.plugin
+    )))
 }
+
+/// The largest coordinate of a shape. Embree leaves out, without a word, what lies beyond 1.844e18.
+const FARTHEST: f32 = 1e18;
 
 /// How a shape is put into the world.
 pub(super) struct Placement {
@@ -226,6 +236,30 @@ impl Geometry {
             Self::Triangles(_) | Self::Disk(_) | Self::Cylinder(_) => {
                 ShapeSample::by_area(reference, *point, self.area()).pdf
             }
+        }
+    }
+
+    /// Whether rays can find the shape: its coordinates are neither too large for the intersection layer, nor so small
+    /// that an exact shape loses its area to rounding (a mesh may have triangles without one).
+    fn is_within_reach(&self) -> bool {
+        let near = |point: Vec3| point.abs().max_element() <= FARTHEST;
+        match self {
+            Self::Triangles(mesh) => mesh.positions().iter().all(|&point| near(point.into())),
+            Self::Sphere(Sphere { center, radius, .. }) => {
+                near(*center) && *radius <= FARTHEST && self.area().is_normal()
+            }
+            Self::Disk(Disk {
+                center,
+                axis_u,
+                axis_v,
+                ..
+            }) => [*center, *axis_u, *axis_v].into_iter().all(near) && self.area().is_normal(),
+            Self::Cylinder(Cylinder {
+                start,
+                axis,
+                radius,
+                ..
+            }) => near(*start) && near(*axis) && *radius <= FARTHEST && self.area().is_normal(),
         }
     }
 

@@ -63,6 +63,12 @@ impl Definitions {
         self.entries.insert(place, definition);
     }
 
+    /// What `name` stands for.
+    pub(super) fn value(&self, name: &str) -> Option<&str> {
+        let entry = self.entries.iter().find(|entry| entry.name == name);
+        entry.map(|entry| entry.value.as_str())
+    }
+
     /// `text` with every `$name` replaced by the longest name that fits, and `\$` by a dollar sign.
     /// Values are not searched for further names. The error is the message.
     pub(super) fn substitute(&mut self, text: &str) -> Result<String, String> {

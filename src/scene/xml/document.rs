@@ -1,11 +1,11 @@
 //! A scene file with everything in it resolved.
 
 use std::borrow::Cow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::definitions::Definitions;
-use super::file::File;
+use super::file::{self, File};
 use super::object::Object;
 use super::parser::Parser;
 use super::references::Drafts;
@@ -14,15 +14,15 @@ use crate::scene::error::SceneError;
 
 /// Where the text of a scene comes from.
 #[derive(Clone, Debug)]
-pub enum SceneSource {
+pub enum SceneSource<'a> {
     /// A file.
     File(PathBuf),
-    /// A text that is part of the program.
-    BuiltIn {
+    /// A text; the files that it names are looked for in the working directory.
+    Text {
         /// What it is called in messages.
-        name: &'static str,
+        name: &'a str,
         /// The XML.
-        text: &'static str,
+        text: &'a str,
     },
 }
 
@@ -32,6 +32,8 @@ pub struct Document {
     /// The `<scene>`.
     pub root: Arc<Object>,
     search_path: SearchPath,
+    /// What `$models` stands for in the scene.
+    models: Option<String>,
 }
 
 impl Document {
@@ -45,9 +47,14 @@ impl Document {
         parameter: &str,
         filename: &str,
     ) -> Result<PathBuf, SceneError> {
-        self.search_path
-            .find(filename)
-            .map_err(|message| object.parameter_error(parameter, message))
+        self.search_path.find(filename).map_err(|message| {
+            let in_models = |models: &String| Path::new(filename).starts_with(models);
+            let hint = match self.models.as_ref().is_some_and(in_models) {
+                true => "; `cohort models` downloads the models, and `--models DIR` or COHORT_MODELS says where they are",
+                false => "",
+            };
+            object.parameter_error(parameter, message + hint)
+        })
     }
 }
 
@@ -65,17 +72,18 @@ pub fn parse(
     let mut parser = Parser {
         definitions: Definitions::new(definitions, suggestions)?,
         drafts: Drafts::default(),
+        included_files: 0,
     };
     let search_path = SearchPath::working_directory();
     let (text, mut file) = match source {
         SceneSource::File(path) => {
-            let text = std::fs::read_to_string(path).map_err(|error| SceneError::Unreadable {
+            let text = file::read_text(path).map_err(|error| SceneError::Unreadable {
                 path: path.clone(),
                 error,
             })?;
             (Cow::Owned(text), File::main(path, search_path))
         }
-        SceneSource::BuiltIn { name, text } => {
+        SceneSource::Text { name, text } => {
             let path = PathBuf::from(format!("<{name}>"));
             (Cow::Borrowed(*text), File::main(&path, search_path))
         }
@@ -85,5 +93,6 @@ pub fn parse(
     Ok(Document {
         root: parser.drafts.connect(scene)?,
         search_path: file.search_path,
+        models: parser.definitions.value("models").map(str::to_owned),
     })
 }

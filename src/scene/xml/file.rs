@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::{fs, io};
 
 use roxmltree::Node;
 
@@ -15,6 +16,9 @@ use crate::scene::error::{Location, SceneError};
 
 /// How deep files can include each other, as in Mitsuba.
 const MAX_INCLUDES: usize = 15;
+
+/// How many files can be included in all: files that include each other several times multiply.
+const MAX_FILES: usize = 1000;
 
 /// A file that is being read.
 pub(super) struct File {
@@ -108,7 +112,12 @@ impl Parser {
         let path = element.convert("filename", |name| file.search_path.find(name))?;
         file.check_include(&path)
             .map_err(|message| element.error(message))?;
-        let text = std::fs::read_to_string(&path).map_err(|error| {
+        self.included_files += 1;
+        if self.included_files > MAX_FILES {
+            let message = format!("too many files are included; there can be {MAX_FILES} in all");
+            return Err(element.error(message));
+        }
+        let text = read_text(&path).map_err(|error| {
             element.attribute_error(
                 "filename",
                 format!("cannot read {}: {error}", path.display()),
@@ -162,6 +171,16 @@ impl Parser {
         element.convert("version", check_version)?;
         Ok((node, element))
     }
+}
+
+/// The text of a scene file.
+pub(super) fn read_text(path: &Path) -> io::Result<String> {
+    String::from_utf8(fs::read(path)?).map_err(|error| {
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + valid.iter().filter(|&&byte| byte == b'\n').count();
+        let message = format!("line {line} is not UTF-8, which a scene file has to be");
+        io::Error::new(io::ErrorKind::InvalidData, message)
+    })
 }
 
 fn read_xml<'a>(text: &'a str, path: &Arc<Path>) -> Result<roxmltree::Document<'a>, SceneError> {

@@ -108,7 +108,9 @@ pub struct Child {
 /// A spectrum that a parameter can have in several forms.
 #[derive(Clone, Debug)]
 pub enum SpectrumProperty {
-    /// `<float>`, `<integer>`, or a constant `<spectrum>`: the same at every wavelength.
+    /// `<float>` or `<integer>`: for a reflectance the same at every wavelength, for an emission that much white.
+    Number(f64),
+    /// A constant `<spectrum>`: the same at every wavelength.
     Constant(f64),
     /// `<rgb>`: linear sRGB.
     Rgb([f64; 3]),
@@ -228,8 +230,8 @@ impl Object {
             return Ok(Some(SpectrumProperty::Texture(child.object.clone())));
         }
         self.convert(name, expected, |value| match value {
-            Value::Float(float) => Some(SpectrumProperty::Constant(*float)),
-            Value::Integer(integer) => Some(SpectrumProperty::Constant(*integer as f64)),
+            Value::Float(float) => Some(SpectrumProperty::Number(*float)),
+            Value::Integer(integer) => Some(SpectrumProperty::Number(*integer as f64)),
             Value::Rgb(rgb) => Some(SpectrumProperty::Rgb(*rgb)),
             Value::Spectrum(SpectrumValue::Constant(constant)) => {
                 Some(SpectrumProperty::Constant(*constant))

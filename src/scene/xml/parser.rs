@@ -16,6 +16,7 @@ use crate::scene::error::{SceneError, list};
 pub(super) struct Parser {
     pub(super) definitions: Definitions,
     pub(super) drafts: Drafts,
+    pub(super) included_files: usize,
 }
 
 /// The object whose children are being read.

@@ -159,7 +159,7 @@ fn files_are_found_in_paths_then_beside_the_scene() {
 
 #[test]
 fn built_in_scenes_have_a_name() {
-    let source = SceneSource::BuiltIn {
+    let source = SceneSource::Text {
         name: "knot",
         text: "<scene version=\"3.0.0\"><blubb/></scene>",
     };

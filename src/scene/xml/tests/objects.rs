@@ -46,8 +46,8 @@ fn spectra_have_four_forms() {
     ]);
     let object = files.parse(&[]).unwrap().root.children[0].object.clone();
     let get = |name| object.spectrum(name).unwrap().unwrap();
-    assert!(matches!(get("a"), SpectrumProperty::Constant(0.5)));
-    assert!(matches!(get("b"), SpectrumProperty::Constant(1.0)));
+    assert!(matches!(get("a"), SpectrumProperty::Number(0.5)));
+    assert!(matches!(get("b"), SpectrumProperty::Number(1.0)));
     assert!(matches!(get("c"), SpectrumProperty::Constant(0.25)));
     assert!(matches!(get("d"), SpectrumProperty::Rgb([0.1, 0.2, 0.3])));
     assert!(matches!(

@@ -17,6 +17,7 @@ fn try_parse(text: &str) {
     let mut parser = Parser {
         definitions: definitions::Definitions::new(&[], &[]).unwrap(),
         drafts: references::Drafts::default(),
+        included_files: 0,
     };
     let search_path = search_path::SearchPath::working_directory();
     let mut file = File::main(Path::new("<test>"), search_path);
@@ -27,7 +28,7 @@ fn try_parse(text: &str) {
 
 #[test]
 fn the_mutated_scene_is_right_to_begin_with() {
-    let source = SceneSource::BuiltIn {
+    let source = SceneSource::Text {
         name: "test",
         text: SCENE,
     };
