@@ -91,7 +91,7 @@ impl Case {
         };
         let room = room(reflectance);
         // Equal energy at all wavelengths has the luminance of its radiance, but it is not the white of sRGB.
-        let images = replicates(&room, self.settings(colour), 16, self.spp);
+        let images = replicates(&room, self.settings(colour), 0..16, self.spp);
         let [.., estimate] = images.means();
         let expected = match colour {
             ColourMode::Rgb => EMITTED * light,

@@ -197,7 +197,7 @@ fn compare_every_strategy(model: &Model, colour: ColourMode) {
     let scene = model.load(SIDE);
     let mut pooled = reference_means.map(|_| Vec::new());
     for walk in every_strategy() {
-        let ours = replicates(&scene, walk.settings(&job), SEEDS, walk.spp);
+        let ours = replicates(&scene, walk.settings(&job), 0..SEEDS, walk.spp);
         let name = format!("{what}, {}", walk.kind);
         Comparison::new(&name, &ours, &reference, BLOCK).assert();
         let means = ours.means_over(&reflected);
@@ -277,7 +277,7 @@ fn compare_walks(job: &Job, walks: &[(String, Walk)]) {
     let reference = model.reference(&mitsuba, job, 64, 32);
     let scene = model.load(job.side);
     for (name, walk) in walks {
-        let ours = replicates(&scene, walk.settings(job), SEEDS, walk.spp);
+        let ours = replicates(&scene, walk.settings(job), 0..SEEDS, walk.spp);
         Comparison::new(name, &ours, &reference, BLOCK).assert();
     }
 }

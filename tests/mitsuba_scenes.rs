@@ -107,7 +107,7 @@ impl Case {
             spp,
         };
         let reference = mitsuba.render(&reference, scene.film.crop.size);
-        let ours = replicates(&scene, self.settings(), OURS.0, OURS.1);
+        let ours = replicates(&scene, self.settings(), 0..OURS.0, OURS.1);
         Comparison::new(what, &ours, &reference, BLOCK).assert();
     }
 }
@@ -180,8 +180,8 @@ fn smooth_lights_are_the_same_however_they_are_found() {
         direct_light: DirectLight::Off,
         ..case.settings()
     };
-    let found = replicates(&scene, by_chance, 24, 160);
-    let sought = replicates(&scene, case.settings(), OURS.0, OURS.1);
+    let found = replicates(&scene, by_chance, 0..24, 160);
+    let sought = replicates(&scene, case.settings(), 0..OURS.0, OURS.1);
     Comparison::new(
         "smooth-light: sought and found by chance",
         &sought,

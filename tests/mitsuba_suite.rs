@@ -108,7 +108,7 @@ fn cornell_boxes() {
             colour,
             ..Settings::default()
         };
-        let ours = replicates(&scene, settings, 24, 20);
+        let ours = replicates(&scene, settings, 0..24, 20);
         Comparison::new(file, &ours, &reference, 4).assert();
     }
 }
@@ -131,7 +131,7 @@ fn scenes_with_their_own_references() {
                 ..Settings::default()
             };
             let spp = scene.sampler.sample_count;
-            let ours = replicates(&scene, settings, 8, spp.div_ceil(8));
+            let ours = replicates(&scene, settings, 0..8, spp.div_ceil(8));
             let reference = |suffix: &str| {
                 let file = reference_file(path, &format!("{name}{suffix}"));
                 read_exr(&file).unwrap_or_else(|error| panic!("{error}"))

@@ -8,18 +8,24 @@ use cohort::scene::Scene;
 
 use super::replicates::Replicates;
 
-/// A render with `settings` of `seeds` images with `spp` samples per pixel each.
+/// Renders with `settings` one image for each of `seeds`, with `spp` samples per pixel.
 ///
 /// On the way it proves of every image that no sample was dropped, and, if there are samples enough for the film to
 /// know the noise of its pixels, that this is the noise which the images do have.
-pub fn replicates(scene: &Arc<Scene>, settings: Settings, seeds: u64, spp: u32) -> Replicates {
+pub fn replicates(
+    scene: &Arc<Scene>,
+    settings: Settings,
+    seeds: std::ops::Range<u64>,
+    spp: u32,
+) -> Replicates {
     let what = format!("{} {:?}", scene.name, settings.strategy);
     let budget = Budget::SamplesPerPixel(NonZeroU32::new(spp).expect("there are samples"));
     let settings = Settings { budget, ..settings };
     let mut render = Render::new(Arc::clone(scene), settings).expect("the scene can be rendered");
     let mut replicates = Replicates::new(scene.film.crop.size);
     let mut believed = Some([0.0; 3]);
-    for seed in 0..seeds {
+    let count = (seeds.end - seeds.start) as f64;
+    for seed in seeds {
         render.reseed(seed);
         let outcome = render.run(&StopFlag::new(), &());
         assert_eq!(
@@ -34,7 +40,7 @@ pub fn replicates(scene: &Arc<Scene>, settings: Settings, seeds: u64, spp: u32) 
         );
         if let (Some(sum), Some(variance)) = (&mut believed, outcome.film.variance()) {
             let mean = variance.mean();
-            (0..3).for_each(|channel| sum[channel] += mean[channel] / seeds as f64);
+            (0..3).for_each(|channel| sum[channel] += mean[channel] / count);
         } else {
             believed = None;
         }

@@ -41,6 +41,11 @@ impl Replicates {
         self.images.push(pixels);
     }
 
+    /// The images, each row by row from the top.
+    pub fn images(&self) -> impl Iterator<Item = &[[f32; CHANNELS]]> {
+        self.images.iter().map(Vec::as_slice)
+    }
+
     /// The number of images.
     pub fn count(&self) -> usize {
         self.images.len()
