@@ -30,9 +30,6 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
-    #[command(flatten)]
-    strategy: StrategyArgs,
-
     /// Camera paths per pixel [default: what the scene says]
     #[arg(long, value_name = "N", conflicts_with = "time", value_parser = parse_count)]
     spp: Option<NonZeroU32>,
@@ -66,7 +63,7 @@ pub struct RenderArgs {
     models: Option<PathBuf>,
 
     /// How direct light is found
-    #[arg(long, value_enum, default_value_t = Direct::NextEvent)]
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = Direct::NextEvent)]
     direct: Direct,
 
     /// Most segments of a path, camera ray included [default: what the scene says]
@@ -78,8 +75,12 @@ pub struct RenderArgs {
     robust: bool,
 
     /// Effort in building the acceleration structure
-    #[arg(long, value_enum, default_value_t = Quality::High)]
+    #[arg(long, value_name = "EFFORT", value_enum, default_value_t = Quality::High)]
     build_quality: Quality,
+
+    // Last, because its heading holds for all that follows.
+    #[command(flatten)]
+    strategy: StrategyArgs,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
