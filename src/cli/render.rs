@@ -160,6 +160,7 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
     let options = ExrOptions {
         format: film.pixel_format,
         half_precision: film.half_precision,
+        samples: outcome.film.unequal_samples(),
         attributes: metadata(&render, &outcome),
     };
     write_exr(&files.exr, &image, &options)?;

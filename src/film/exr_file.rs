@@ -15,6 +15,9 @@ pub struct ExrOptions {
     pub format: PixelFormat,
     /// 16-bit instead of 32-bit numbers.
     pub half_precision: bool,
+    /// Camera paths of each pixel, row by row from the top, for a channel `samples` of their own; none where all
+    /// pixels have the same number. Ignored where the length is not that of the image.
+    pub samples: Option<Vec<u32>>,
     /// Attributes: name and value.
     pub attributes: Vec<(String, String)>,
 }
@@ -24,6 +27,7 @@ impl Default for ExrOptions {
         Self {
             format: PixelFormat::Rgb,
             half_precision: false,
+            samples: None,
             attributes: Vec::new(),
         }
     }
@@ -45,7 +49,7 @@ pub fn write_exr(
         }
     };
     // Channels of an EXR stand in alphabetical order.
-    let channels: SmallVec<[AnyChannel<FlatSamples>; 4]> = match options.format {
+    let mut channels: SmallVec<[AnyChannel<FlatSamples>; 4]> = match options.format {
         PixelFormat::Rgb => [("B", 2), ("G", 1), ("R", 0)]
             .into_iter()
             .map(|(name, channel)| AnyChannel::new(name, column(&|pixel| pixel[channel])))
@@ -55,6 +59,14 @@ pub fn write_exr(
             std::iter::once(AnyChannel::new("Y", column(&luminance))).collect()
         }
     };
+    if let Some(samples) = &options.samples
+        && samples.len() == size.pixels()
+    {
+        channels.push(AnyChannel::new(
+            "samples",
+            FlatSamples::U32(samples.clone()),
+        ));
+    }
     let mut attributes = LayerAttributes {
         software_name: Some(Text::from(concat!("cohort ", env!("CARGO_PKG_VERSION")))),
         ..LayerAttributes::default()
@@ -69,7 +81,8 @@ pub fn write_exr(
         attributes,
         Encoding {
             compression: Compression::ZIP16,
-            ..Encoding::FAST_LOSSLESS
+            blocks: Blocks::ScanLines,
+            line_order: LineOrder::Increasing,
         },
         AnyChannels::sort(channels),
     );
@@ -147,6 +160,29 @@ mod tests {
             attribute,
             Some(&AttributeValue::Text(Text::from("roulette")))
         );
+    }
+
+    #[test]
+    fn unequal_sample_counts_get_a_channel() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let image = Image::black(ImageSize {
+            width: 3,
+            height: 1,
+        });
+        let options = ExrOptions {
+            samples: Some(vec![4, 5, 6]),
+            ..ExrOptions::default()
+        };
+        write_exr(&path, &image, &options).unwrap();
+        let file = read_first_flat_layer_from_file(&path).unwrap();
+        let channels = &file.layer_data.channel_data.list;
+        let samples = channels.iter().find(|channel| channel.name == *"samples");
+        assert_eq!(
+            samples.unwrap().sample_data,
+            FlatSamples::U32(vec![4, 5, 6])
+        );
+        assert_eq!(read_exr(&path).unwrap(), image);
     }
 
     #[test]

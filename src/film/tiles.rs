@@ -98,6 +98,23 @@ impl Film {
         self.tiles.iter().flat_map(|tile| &tile.pixels)
     }
 
+    /// The number of camera paths of every pixel, row by row from the top, or `None` where all have the same.
+    pub fn unequal_samples(&self) -> Option<Vec<u32>> {
+        let first = self.tiles.first()?.pixels.first()?.samples;
+        if self.pixels().all(|pixel| pixel.samples == first) {
+            return None;
+        }
+        let mut samples = vec![0; self.size.pixels()];
+        for tile in &self.tiles {
+            for (index, pixel) in tile.pixels.iter().enumerate() {
+                let (x, y) = tile.position(index);
+                let place = y as usize * self.size.width as usize + x as usize;
+                samples[place] = u32::try_from(pixel.samples).unwrap_or(u32::MAX);
+            }
+        }
+        Some(samples)
+    }
+
     fn map(&self, value: impl Fn(&PixelStatistics) -> [f32; 3]) -> Image {
         let mut image = Image::black(self.size);
         for tile in &self.tiles {
@@ -133,6 +150,8 @@ mod tests {
             }
         }
         assert!(film.pixels().all(|pixel| pixel.samples == 1));
-        assert_eq!(film.variance(), None);
+        assert_eq!((film.variance(), film.unequal_samples()), (None, None));
+        film.tiles_mut()[0].pixels[1].add_unit(2, [0.0; 3]);
+        assert_eq!(film.unequal_samples().unwrap()[..3], [1, 3, 1]);
     }
 }

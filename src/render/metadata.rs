@@ -13,6 +13,7 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
     let (fewest, most) = film.pixels().fold((u64::MAX, 0), |(low, high), pixel| {
         (low.min(pixel.samples), high.max(pixel.samples))
     });
+    // Where they differ, the EXR has a channel with the number of each pixel.
     let samples = if fewest == most {
         format!("{most}")
     } else {
