@@ -70,7 +70,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = parse_count)]
     max_depth: Option<NonZeroU32>,
 
-    /// Watertight intersection, 15 to 25 % slower
+    /// Watertight intersection, somewhat slower
     #[arg(long)]
     robust: bool,
 

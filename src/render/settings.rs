@@ -53,7 +53,7 @@ pub struct Settings {
     pub direct_light: DirectLight,
     /// Most segments of a path, camera ray included; `None` takes what the scene says.
     pub max_depth: Option<NonZeroU32>,
-    /// Watertight intersection, at 15 to 25 % of the ray rate.
+    /// Watertight intersection, at some cost in ray rate.
     pub robust: bool,
     /// Speed of building the acceleration structure against speed of the rays.
     pub build_quality: BuildQuality,

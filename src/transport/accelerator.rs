@@ -17,7 +17,7 @@ pub struct AcceleratorOptions {
     pub threads: NonZeroUsize,
     /// Speed of the build against speed of the rays.
     pub quality: BuildQuality,
-    /// Watertight intersection, at 15 to 25 % of the ray rate.
+    /// Watertight intersection, at some cost in ray rate.
     pub robust: bool,
 }
 
