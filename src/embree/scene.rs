@@ -26,7 +26,7 @@ pub enum BuildQuality {
 pub struct BuildOptions {
     /// Time to build against time to trace.
     pub quality: BuildQuality,
-    /// No ray slips through an edge that two triangles share; costs 15 to 25 % of the speed.
+    /// No ray slips through an edge that two triangles share, at some cost in speed.
     pub robust: bool,
     /// Less memory, somewhat slower.
     pub compact: bool,
