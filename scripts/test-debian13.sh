@@ -185,34 +185,6 @@ in_checkout cargo test --locked --test embree_threads
 rm -rf "$target/exchange"
 mkdir -p "$target/exchange"
 in_checkout env COHORT_EXCHANGE=/target/exchange cargo test --locked --test across_systems
-(cd "$checkout" && rustc --print sysroot)
-rustup_home=${RUSTUP_HOME:-$HOME/.rustup}
-if [ "${sysroot#"$rustup_home"/toolchains/}" != "$sysroot" ]; then
-    bind "$rustup_home" /rustup ro
-    toolchain=$(basename "$sysroot")
-else
-    # Rust without rustup: its directory, and its bin on the path instead of cargo's.
-    bind "$sysroot" /cargo-toolchain ro
-    toolchain=
-fi
-
-# in_checkout COMMAND...: runs in the checkout, inside the root.
-in_checkout() {
-    # shellcheck disable=SC2016
-    inside sh -c 'PATH=/cargo-toolchain/bin:$PATH; cd /checkout && exec "$@"' sh "$@"
-}
-
-echo "Debian $(cat "$root/etc/debian_version"), Embree $(inside dpkg-query -W -f '${Version}' libembree-dev), $(in_checkout rustc --version)"
-
-# Step 1: the tests of the Embree layer, against Embree 4.
-in_checkout cargo test --locked --lib embree
-in_checkout cargo test --locked --test embree_threads
-
-# Step 2: one small render in both systems; the second to render compares its images with the first's.
-rm -rf "$target/exchange"
-mkdir -p "$target/exchange"
-inside env COHORT_EXCHANGE=/target/exchange sh -c \
-    'PATH=/cargo-toolchain/bin:$PATH; cd /checkout && exec cargo test --locked --test across_systems'
 (cd "$checkout" && COHORT_EXCHANGE="$target/exchange" cargo test --locked --test across_systems -- --nocapture)
 
 echo "PASSED: the tests on Debian 13 (Embree 4)."
