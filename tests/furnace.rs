@@ -111,7 +111,9 @@ impl Case {
         );
         println!("{what}");
         assert!(error <= largest_error, "{what}: too noisy to say anything");
-        assert!(deviation.abs() <= 4.0 * error + 2e-6, "{what}");
+        // Dozens of terms are added up in single precision.
+        const ROUNDING: f64 = 1e-5;
+        assert!(deviation.abs() <= 4.0 * error + ROUNDING, "{what}");
     }
 }
 
