@@ -28,6 +28,8 @@ pub struct Engine {
     pub(super) filter: FilterSampler,
     /// The probability with which next-event estimation chooses each emitter.
     pub(super) light_choice: f32,
+    /// Which emitter surrounds the scene; looked up once, for rays that leave the scene ask for it.
+    surroundings: Option<usize>,
 }
 
 /// One batch: some samples of every pixel of a tile.
@@ -50,6 +52,10 @@ impl Engine {
         Self {
             projection: scene.camera.project(scene.film.size),
             filter: FilterSampler::new(&scene.film),
+            surroundings: scene
+                .emitters
+                .iter()
+                .position(|emitter| matches!(emitter, Emitter::Constant(_))),
             light_choice: 1.0 / scene.emitters.len().max(1) as f32,
             scene,
             accelerator,
@@ -76,13 +82,10 @@ impl Engine {
     /// The light that surrounds the scene, if there is one.
     #[inline]
     pub(super) fn surroundings(&self) -> Option<&ConstantLight> {
-        self.scene
-            .emitters
-            .iter()
-            .find_map(|emitter| match emitter {
-                Emitter::Constant(light) => Some(light),
-                Emitter::Area(_) | Emitter::Point(_) => None,
-            })
+        match &self.scene.emitters[self.surroundings?] {
+            Emitter::Constant(light) => Some(light),
+            Emitter::Area(_) | Emitter::Point(_) => None,
+        }
     }
 }
 

@@ -17,7 +17,9 @@ pub(super) fn decide<C: Colour>(
     random: &mut RandomStream,
     offspring: &mut Offspring,
 ) -> WalkReport {
-    let scalar = |spectrum: C::Spectrum| match strategy.scalar() {
+    // Asked once: a call through the trait for every particle would be felt.
+    let (wanted, scope) = (strategy.scalar(), strategy.scope());
+    let scalar = |spectrum: C::Spectrum| match wanted {
         Scalar::Mean => spectrum.mean(),
         Scalar::Maximum => spectrum.max_component(),
     };
@@ -34,7 +36,7 @@ pub(super) fn decide<C: Colour>(
     particles
         .shininess
         .extend(vertices.bsdf.iter().map(|bsdf| bsdf.shininess()));
-    let group_of = |path: u32| match strategy.scope() {
+    let group_of = |path: u32| match scope {
         Scope::Particle | Scope::CameraPath => path,
         Scope::Pixel => path / samples,
         Scope::Tile => 0,
