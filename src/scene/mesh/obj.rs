@@ -1,11 +1,10 @@
-//! Wavefront OBJ files.
+//! Wavefront OBJ files, read by the crate `tobj`.
 //!
 //! All objects and groups of a file become one mesh, and corners with the same indices one vertex, as in Mitsuba 3,
-//! so that recomputed normals are smooth across the borders of groups and not across seams of the texture. (The crate
-//! `tobj` splits a file into one mesh per group and forgets which corners were the same; its errors name no line.)
+//! so that recomputed normals are smooth across the borders of groups and not across seams of the texture. `tobj` makes
+//! a mesh of each group, names no line in its errors and trusts indices: so it is handed the statements of the geometry
+//! alone, without groups, after they were checked.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::path::Path;
 
 use super::{MeshData, MeshError, MeshProblem, check};
@@ -25,152 +24,161 @@ pub fn read(path: &Path, flip_tex_coords: bool) -> Result<MeshData, MeshError> {
 
 /// Reads the contents of an OBJ file.
 pub(super) fn parse(bytes: &[u8], flip_tex_coords: bool) -> Result<MeshData, MeshProblem> {
-    let mut reader = Reader {
-        flip_tex_coords,
-        ..Reader::default()
-    };
+    let mut geometry = Geometry::default();
     for (index, line) in bytes.split(|&byte| byte == b'\n').enumerate() {
-        reader
+        geometry
             .line(&String::from_utf8_lossy(line))
             .map_err(|message| MeshProblem::Format(format!("line {}: {message}", index + 1)))?;
     }
-    check::counts(
-        reader.positions.len() as u64,
-        reader.mesh.triangles.len() as u64,
-    )?;
-    check::finished(reader.mesh)
+    check::counts(geometry.positions as u64, geometry.faces as u64)?;
+    let options = tobj::LoadOptions {
+        single_index: true,
+        triangulate: true,
+        ..tobj::LoadOptions::default()
+    };
+    let no_materials = |_: &Path| Ok(Default::default());
+    let (models, _) =
+        tobj::load_obj_buf(&mut geometry.statements.as_bytes(), &options, no_materials)
+            .map_err(|error| MeshProblem::Format(error.to_string()))?;
+    let mesh = models.into_iter().next().ok_or(MeshProblem::NoTriangles)?;
+    check::finished(mesh_data(mesh.mesh, flip_tex_coords))
 }
 
-/// What has been read so far.
+fn mesh_data(mesh: tobj::Mesh, flip_tex_coords: bool) -> MeshData {
+    let mut uvs = grouped::<2, _>(&mesh.texcoords);
+    if flip_tex_coords {
+        uvs.iter_mut().for_each(|[_, v]| *v = 1.0 - *v);
+    }
+    let normals = grouped(&mesh.normals);
+    MeshData {
+        positions: grouped(&mesh.positions),
+        triangles: grouped(&mesh.indices),
+        normals: (!normals.is_empty()).then_some(normals),
+        uvs: (!uvs.is_empty()).then_some(uvs),
+    }
+}
+
+/// The elements of a list that has `N` numbers for each.
+fn grouped<const N: usize, T: Copy>(flat: &[T]) -> Vec<[T; N]> {
+    flat.as_chunks().0.to_vec()
+}
+
+/// The statements of a file that say what its geometry is, all of them sound.
 #[derive(Default)]
-struct Reader {
-    flip_tex_coords: bool,
-    positions: Vec<[f32; 3]>,
-    uvs: Vec<[f32; 2]>,
-    normals: Vec<[f32; 3]>,
-    /// The vertex of the mesh that a corner became.
-    vertices: HashMap<Corner, u32>,
-    mesh: MeshData,
+struct Geometry {
+    /// The lines `v`, `vt`, `vn` and `f`, without what may follow the numbers that count.
+    statements: String,
+    positions: usize,
+    uvs: usize,
+    normals: usize,
+    faces: usize,
+    /// What the corners so far have.
+    attributes: Option<Attributes>,
 }
 
-/// A corner of a face: positions in the lists of the file.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-struct Corner {
-    position: usize,
-    uv: Option<usize>,
-    normal: Option<usize>,
+/// What a corner has beside a position.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Attributes {
+    uv: bool,
+    normal: bool,
 }
 
-impl Reader {
+impl Geometry {
     fn line(&mut self, line: &str) -> Result<(), String> {
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => self.positions.push(numbers(words)?),
-            Some("vn") => self.normals.push(numbers(words)?),
-            Some("vt") => {
-                let [u, v] = numbers(words)?;
-                let v = if self.flip_tex_coords { 1.0 - v } else { v };
-                self.uvs.push([u, v]);
-            }
-            Some("f") => self.face(words)?,
-            _ => {}
+            Some("v") => self.numbers::<3>("v", words, |geometry| &mut geometry.positions),
+            Some("vn") => self.numbers::<3>("vn", words, |geometry| &mut geometry.normals),
+            Some("vt") => self.numbers::<2>("vt", words, |geometry| &mut geometry.uvs),
+            Some("f") => self.face(words),
+            _ => Ok(()),
         }
+    }
+
+    /// Takes the first `N` words as numbers; what follows (a weight, a colour) is skipped.
+    fn numbers<'a, const N: usize>(
+        &mut self,
+        keyword: &str,
+        mut words: impl Iterator<Item = &'a str>,
+        count: impl Fn(&mut Self) -> &mut usize,
+    ) -> Result<(), String> {
+        self.statements.push_str(keyword);
+        for _ in 0..N {
+            let word = words
+                .next()
+                .ok_or_else(|| format!("{N} numbers are needed"))?;
+            word.parse::<f32>()
+                .map_err(|_| format!("`{word}` is not a number"))?;
+            self.push(word);
+        }
+        self.statements.push('\n');
+        *count(self) += 1;
         Ok(())
     }
 
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<(), String> {
-        let corners: Result<Vec<u32>, String> = words.map(|word| self.vertex(word)).collect();
-        match corners?[..] {
-            [first, ref rest @ ..] if rest.len() >= 2 => {
-                let fan = rest.windows(2).map(|pair| [first, pair[0], pair[1]]);
-                self.mesh.triangles.extend(fan);
-                Ok(())
+        self.statements.push('f');
+        let mut corners = 0;
+        for word in words {
+            let attributes = self.corner(word)?;
+            let expected = *self.attributes.get_or_insert(attributes);
+            for (name, has, should) in [
+                ("texture coordinates", attributes.uv, expected.uv),
+                ("normals", attributes.normal, expected.normal),
+            ] {
+                if has != should {
+                    return Err(format!("only some of the corners have {name}"));
+                }
             }
-            ref corners => Err(format!(
-                "the face has {} corners; it needs at least 3",
-                corners.len()
-            )),
+            self.push(word);
+            corners += 1;
         }
+        if corners < 3 {
+            return Err(format!(
+                "the face has {corners} corners; it needs at least 3"
+            ));
+        }
+        self.statements.push('\n');
+        self.faces += 1;
+        Ok(())
     }
 
-    /// The vertex of the mesh for a corner such as `7`, `7/2`, `7//3` or `7/2/3`.
-    fn vertex(&mut self, word: &str) -> Result<u32, String> {
+    /// Checks a corner such as `7`, `7/2`, `7//3` or `7/2/3`.
+    fn corner(&self, word: &str) -> Result<Attributes, String> {
         let mut parts = word.split('/');
         let position = parts.next().unwrap_or_default();
         let mut optional = |what, count| match parts.next() {
-            None | Some("") => Ok(None),
-            Some(index) => resolve(index, count, what).map(Some),
+            None | Some("") => Ok(false),
+            Some(index) => exists(index, count, what).map(|()| true),
         };
-        let corner = Corner {
-            uv: optional("texture coordinate", self.uvs.len())?,
-            normal: optional("normal", self.normals.len())?,
-            position: resolve(position, self.positions.len(), "vertex")?,
+        let attributes = Attributes {
+            uv: optional("texture coordinate", self.uvs)?,
+            normal: optional("normal", self.normals)?,
         };
-        if parts.next().is_some() {
-            return Err(format!("`{word}` has to be vertex/texture/normal"));
+        exists(position, self.positions, "vertex")?;
+        match parts.next() {
+            None => Ok(attributes),
+            Some(_) => Err(format!("`{word}` has to be vertex/texture/normal")),
         }
-        let next = u32::try_from(self.vertices.len()).map_err(|_| "too many vertices")?;
-        match self.vertices.entry(corner) {
-            Entry::Occupied(entry) => return Ok(*entry.get()),
-            Entry::Vacant(entry) => entry.insert(next),
-        };
-        self.mesh.positions.push(self.positions[corner.position]);
-        let uv = corner.uv.map(|index| self.uvs[index]);
-        push(&mut self.mesh.uvs, uv, next, "texture coordinates")?;
-        let normal = corner.normal.map(|index| self.normals[index]);
-        push(&mut self.mesh.normals, normal, next, "normals")?;
-        Ok(next)
+    }
+
+    fn push(&mut self, word: &str) {
+        self.statements.push(' ');
+        self.statements.push_str(word);
     }
 }
 
-/// Adds the attribute of vertex number `index`, which all vertices have or none.
-fn push<T>(
-    attribute: &mut Option<Vec<T>>,
-    value: Option<T>,
-    index: u32,
-    name: &str,
-) -> Result<(), String> {
-    match (attribute, value) {
-        (Some(values), Some(value)) => values.push(value),
-        (None, None) => {}
-        (attribute @ None, Some(value)) if index == 0 => *attribute = Some(vec![value]),
-        _ => return Err(format!("only some of the corners have {name}")),
-    }
-    Ok(())
-}
-
-/// The first numbers of a line; what follows (a weight, a colour) is skipped.
-fn numbers<'a, const N: usize>(
-    mut words: impl Iterator<Item = &'a str>,
-) -> Result<[f32; N], String> {
-    let mut numbers = [0.0; N];
-    for number in &mut numbers {
-        let word = words
-            .next()
-            .ok_or_else(|| format!("{N} numbers are needed"))?;
-        *number = word
-            .parse()
-            .map_err(|_| format!("`{word}` is not a number"))?;
-    }
-    Ok(numbers)
-}
-
-/// The place in a list of `count` that `index`, from 1 or from -1 backwards, stands for.
-fn resolve(index: &str, count: usize, what: &str) -> Result<usize, String> {
+/// Checks that `index`, from 1 or from -1 backwards, stands for one of the `count` so far.
+fn exists(index: &str, count: usize, what: &str) -> Result<(), String> {
     let number: i64 = index
         .parse()
         .map_err(|_| format!("`{index}` is not the number of a {what}"))?;
-    let place = match number {
-        1.. => Some(number - 1),
-        0 => None,
-        _ => number.checked_add_unsigned(count as u64),
-    };
-    place
-        .and_then(|place| usize::try_from(place).ok())
-        .filter(|&place| place < count)
-        .ok_or_else(|| {
-            format!("the face refers to {what} {number}, but there are {count} up to here, counted from 1")
-        })
+    if number == 0 || number.unsigned_abs() > count as u64 {
+        return Err(format!(
+            "the face refers to {what} {number}, but there are {count} up to here, counted from 1"
+        ));
+    }
+    Ok(())
 }
 
 #[cfg(test)]
