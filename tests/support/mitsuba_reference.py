@@ -25,7 +25,8 @@ integrator = scene.integrator()
 if arguments.max_depth is not None:
     integrator = mitsuba.load_dict({"type": "path", "max_depth": arguments.max_depth})
 with open(arguments.output, "wb") as output:
-    for seed in range(arguments.seeds):
+    # Seeds far apart: how Mitsuba makes streams of random numbers from them is its own affair.
+    for seed in numpy.random.SeedSequence(0).generate_state(arguments.seeds).tolist():
         image = mitsuba.render(scene, integrator=integrator, spp=arguments.spp, seed=seed)
         rgb = numpy.array(image, dtype="<f4")[:, :, :3]
         output.write(numpy.ascontiguousarray(rgb).tobytes())
