@@ -56,8 +56,9 @@ fn wait_until_rendering(child: &Child) {
 }
 
 fn interrupt(child: &Child) {
-    let status = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
+    // The shell's own `kill`: a minimal Debian has no program of this name.
+    let status = Command::new("sh")
+        .args(["-c", "kill -INT \"$0\"", &child.id().to_string()])
         .status();
     assert!(status.unwrap().success());
 }
