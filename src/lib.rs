@@ -71,6 +71,7 @@ pub mod render;
 pub mod sampling;
 pub mod scene;
 pub mod spectrum;
+pub mod study;
 pub mod transport;
 pub mod walk;
 

@@ -1,0 +1,4 @@
+//! What accuracy costs in time: competitors at equal budgets, their errors, and how sure that is.
+
+pub mod results;
+pub mod statistics;
