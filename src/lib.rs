@@ -56,7 +56,7 @@
 //! | module | what it has |
 //! |---|---|
 //! | [`scene`] | scene files and what they state: shapes, materials, emitters, the camera |
-//! | [`render`] | budgets, threads, progress, interruption |
+//! | [`render`] | budgets, threads, progress, interruption, resuming |
 //! | [`film`] | images, their noise, EXR and PNG files |
 //! | [`walk`] | the strategies |
 //! | [`transport`] | the stages that move batches of paths |
@@ -78,7 +78,8 @@ pub mod walk;
 pub use embree::BuildQuality;
 pub use film::{ExrOptions, Film, Image, read_exr, write_exr, write_png};
 pub use render::{
-    Budget, ColourMode, Ended, Observer, Outcome, Progress, Render, RenderError, Settings, StopFlag,
+    Budget, ColourMode, Ended, Observer, Outcome, Progress, Render, RenderError, RenderState,
+    Settings, StopFlag,
 };
 pub use scene::{LoadOptions, Scene, SceneError};
 pub use transport::DirectLight;

@@ -400,6 +400,7 @@ fn help_and_version() {
         "--strategy",
         "--spp",
         "--time",
+        "--rays",
         "--threads",
         "--seed",
         "--size",

@@ -1,7 +1,7 @@
 //! `cohort render`
 
 use std::error::Error;
-use std::num::{NonZeroU32, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -31,12 +31,16 @@ pub struct RenderArgs {
     output: Option<PathBuf>,
 
     /// Camera paths per pixel [default: what the scene says]
-    #[arg(long, value_name = "N", conflicts_with = "time", value_parser = parse_count)]
+    #[arg(long, value_name = "N", conflicts_with_all = ["time", "rays"], value_parser = parse_count)]
     spp: Option<NonZeroU32>,
 
     /// Wall-clock time to render, without loading, such as 90s, 30m or 1h30m
-    #[arg(long, value_name = "DURATION", value_parser = parse_time)]
+    #[arg(long, value_name = "DURATION", conflicts_with = "rays", value_parser = parse_time)]
     time: Option<Duration>,
+
+    /// Rays to trace, shadow rays included
+    #[arg(long, value_name = "N", value_parser = parse_rays)]
+    rays: Option<NonZeroU64>,
 
     /// Threads that load and render [default: all cores]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
@@ -100,6 +104,11 @@ enum Quality {
 
 fn parse_count(text: &str) -> Result<NonZeroU32, String> {
     let message = |_| format!("it must be a whole number from 1 to {}", u32::MAX);
+    text.parse().map_err(message)
+}
+
+fn parse_rays(text: &str) -> Result<NonZeroU64, String> {
+    let message = |_| format!("it must be a whole number from 1 to {}", u64::MAX);
     text.parse().map_err(message)
 }
 
@@ -167,7 +176,7 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
     write_png(&files.png, &image)?;
     summarise(&render, &outcome, &files);
     Ok(match outcome.ended {
-        Ended::Complete | Ended::OutOfTime => ExitCode::SUCCESS,
+        Ended::Complete | Ended::OutOfTime | Ended::OutOfRays => ExitCode::SUCCESS,
         Ended::Interrupted => ExitCode::from(130),
     })
 }
@@ -211,9 +220,10 @@ impl RenderArgs {
         let of_scene = NonZeroU32::new(scene.sampler.sample_count).unwrap_or(NonZeroU32::MIN);
         Ok(Settings {
             strategy: self.strategy.build(scene.integrator.roulette_depth)?,
-            budget: match self.time {
-                Some(time) => Budget::Time(time),
-                None => Budget::SamplesPerPixel(self.spp.unwrap_or(of_scene)),
+            budget: match (self.time, self.rays) {
+                (Some(time), _) => Budget::Time(time),
+                (None, Some(rays)) => Budget::Rays(rays),
+                (None, None) => Budget::SamplesPerPixel(self.spp.unwrap_or(of_scene)),
             },
             threads: self.threads(),
             seed: self.seed.unwrap_or(scene.sampler.seed),

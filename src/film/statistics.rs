@@ -1,11 +1,13 @@
 //! What a pixel knows: its mean and how far to trust it.
 
+use serde::{Deserialize, Serialize};
+
 /// Sums over the samples of one pixel, in linear sRGB.
 ///
 /// The samples arrive in *units* that are independent of each other: one camera path, or, where a strategy resamples
 /// several camera paths together, all samples that one population had in the pixel. A unit of n samples has n times
 /// less variance than a sample, whatever the correlation inside of it; that gives the variance of the mean.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PixelStatistics {
     /// Number of camera paths.
     pub samples: u64,

@@ -1,5 +1,7 @@
 //! The film as tiles, each owned by whoever renders it.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Image, PixelStatistics};
 use crate::scene::ImageSize;
 
@@ -7,7 +9,7 @@ use crate::scene::ImageSize;
 pub const TILE_SIDE: u32 = 16;
 
 /// A square of the film (less at the right and lower border).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FilmTile {
     /// First column.
     pub x: u32,
@@ -20,6 +22,25 @@ pub struct FilmTile {
 }
 
 impl FilmTile {
+    /// The tile without samples whose first column and row are `x` and `y`, on a film of size `film`.
+    fn new([x, y]: [u32; 2], film: ImageSize) -> Self {
+        let size = Self::size_at([x, y], film);
+        Self {
+            x,
+            y,
+            size,
+            pixels: vec![PixelStatistics::default(); size.pixels()],
+        }
+    }
+
+    /// The size of the tile whose first column and row are `x` and `y`, on a film of size `film`.
+    fn size_at([x, y]: [u32; 2], film: ImageSize) -> ImageSize {
+        ImageSize {
+            width: TILE_SIDE.min(film.width - x),
+            height: TILE_SIDE.min(film.height - y),
+        }
+    }
+
     /// Column and row on the film of the pixel with this index in [`Self::pixels`].
     #[inline]
     pub fn position(&self, index: usize) -> (u32, u32) {
@@ -32,7 +53,7 @@ impl FilmTile {
 }
 
 /// The sums of all pixels of the crop window, tile by tile.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Film {
     size: ImageSize,
     tiles: Vec<FilmTile>,
@@ -41,23 +62,24 @@ pub struct Film {
 impl Film {
     /// A film without samples.
     pub fn new(size: ImageSize) -> Self {
-        let starts = |length: u32| (0..length).step_by(TILE_SIDE as usize);
-        let tile = |x: u32, y: u32| {
-            let size = ImageSize {
-                width: TILE_SIDE.min(size.width - x),
-                height: TILE_SIDE.min(size.height - y),
-            };
-            FilmTile {
-                x,
-                y,
-                size,
-                pixels: vec![PixelStatistics::default(); size.pixels()],
-            }
-        };
-        let tiles = starts(size.height)
-            .flat_map(|y| starts(size.width).map(move |x| tile(x, y)))
+        let tiles = corners(size)
+            .map(|corner| FilmTile::new(corner, size))
             .collect();
         Self { size, tiles }
+    }
+
+    /// Whether this is a film of `size` with all its tiles. A film is; what was loaded from a file may be anything.
+    pub fn has_size(&self, size: ImageSize) -> bool {
+        let is_at = |tile: &FilmTile, [x, y]: [u32; 2]| {
+            [tile.x, tile.y] == [x, y]
+                && tile.size == FilmTile::size_at([x, y], size)
+                && tile.pixels.len() == tile.size.pixels()
+        };
+        self.size == size
+            && self.tiles.len() == corners(size).count()
+            && corners(size)
+                .zip(&self.tiles)
+                .all(|(corner, tile)| is_at(tile, corner))
     }
 
     /// Size in pixels.
@@ -125,6 +147,12 @@ impl Film {
         }
         image
     }
+}
+
+/// First column and row of every tile of a film of `size`, row by row.
+fn corners(size: ImageSize) -> impl Iterator<Item = [u32; 2]> {
+    let starts = |length: u32| (0..length).step_by(TILE_SIDE as usize);
+    starts(size.height).flat_map(move |y| starts(size.width).map(move |x| [x, y]))
 }
 
 #[cfg(test)]

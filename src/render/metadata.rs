@@ -51,7 +51,7 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
         "build-quality",
         format!("{:?}", settings.build_quality).to_lowercase(),
     );
-    add("seed", settings.seed.to_string());
+    add("seed", outcome.seed.to_string());
     add("threads", settings.threads.to_string());
     add("samples", samples);
     add("ended", outcome.ended.name().into());

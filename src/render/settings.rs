@@ -1,10 +1,11 @@
 //! What a render can be told beside the scene.
 
-use std::num::{NonZeroU32, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::time::Duration;
 
 use crate::embree::BuildQuality;
-use crate::transport::DirectLight;
+use crate::spectrum::{Rgb, Spectral};
+use crate::transport::{DirectLight, TraceBatches, Tracer};
 use crate::walk::{Roulette, Strategy};
 
 /// When a render is done.
@@ -14,6 +15,8 @@ pub enum Budget {
     SamplesPerPixel(NonZeroU32),
     /// After so much wall-clock time, counted from when the scene is loaded and its acceleration structure is built.
     Time(Duration),
+    /// Once so many rays, shadow rays included, are traced; what is under way then is finished.
+    Rays(NonZeroU64),
 }
 
 /// How colours are carried along paths.
@@ -32,6 +35,14 @@ impl ColourMode {
         match self {
             Self::Spectral => "spectral, 4 wavelengths a path",
             Self::Rgb => "rgb",
+        }
+    }
+
+    /// A thread's memory for tracing in this mode.
+    pub(super) fn tracer(self) -> Box<dyn TraceBatches> {
+        match self {
+            Self::Spectral => Box::<Tracer<Spectral<4>>>::default(),
+            Self::Rgb => Box::<Tracer<Rgb>>::default(),
         }
     }
 }

@@ -116,10 +116,18 @@ impl<C: Colour> Default for Tracer<C> {
     }
 }
 
-impl<C: Colour> Tracer<C> {
+/// A tracer of whichever colour.
+pub trait TraceBatches: Send {
     /// Traces a batch and adds its samples to the pixels of `tile`. The result depends on nothing but the engine, the
     /// job and the tile.
-    pub fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
+    fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile);
+
+    /// What was counted since the last call.
+    fn take_statistics(&mut self) -> TraceStatistics;
+}
+
+impl<C: Colour> TraceBatches for Tracer<C> {
+    fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
         let start = Instant::now();
         let mut random = RandomStream::new(job.key);
         camera::start(
@@ -136,11 +144,12 @@ impl<C: Colour> Tracer<C> {
         self.statistics.total_time += start.elapsed();
     }
 
-    /// What was counted since the last call.
-    pub fn take_statistics(&mut self) -> TraceStatistics {
+    fn take_statistics(&mut self) -> TraceStatistics {
         std::mem::take(&mut self.statistics)
     }
+}
 
+impl<C: Colour> Tracer<C> {
     /// Moves the batch from vertex to vertex until no particle is left.
     fn follow(&mut self, engine: &Engine, job: &TileJob, random: &mut RandomStream) {
         let max_depth = engine.settings.max_depth.unwrap_or(u32::MAX);
