@@ -79,7 +79,7 @@ pub use embree::BuildQuality;
 pub use film::{ExrOptions, Film, Image, read_exr, write_exr, write_png};
 pub use render::{
     Budget, ColourMode, Ended, Observer, Outcome, Progress, Render, RenderError, RenderState,
-    Settings, StopFlag,
+    Settings, StopFlag, WavelengthCount,
 };
 pub use scene::{LoadOptions, Scene, SceneError};
 pub use transport::DirectLight;

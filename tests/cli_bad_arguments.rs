@@ -41,6 +41,7 @@ fn numbers_out_of_range() {
             "a size is written WxH, such as 800x600",
         ),
         ("--size", "10", "a size is written WxH, such as 800x600"),
+        ("--wavelengths", "3", "1, 4, 8"),
         ("--direct", "on", "next-event"),
         ("--build-quality", "best", "high"),
         ("--strategy", "rullette", "go-with-the-winners"),
@@ -56,6 +57,7 @@ fn numbers_out_of_range() {
     ] {
         assert!(refusal(budgets).contains("cannot be used with"));
     }
+    assert!(refusal(["--rgb", "--wavelengths", "4"]).contains("cannot be used with"));
 }
 
 #[test]

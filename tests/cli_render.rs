@@ -132,6 +132,9 @@ fn the_same_command_gives_the_same_bits() {
     assert_ne!(once, pixels(["--seed", "1"]));
     assert_ne!(once, pixels(["--spp", "3"]));
     assert_ne!(once, pixels(["--rgb"]));
+    assert_eq!(once, pixels(["--wavelengths", "4"]));
+    assert_ne!(once, pixels(["--wavelengths", "1"]));
+    assert_ne!(once, pixels(["--wavelengths", "8"]));
     assert_ne!(once, pixels(["--direct", "off"]));
     assert_eq!(pixels(["--size", "3x5"]).len(), 15);
 }
@@ -405,6 +408,7 @@ fn help_and_version() {
         "--seed",
         "--size",
         "--rgb",
+        "--wavelengths",
         "--models",
         "--direct",
         "--max-depth",

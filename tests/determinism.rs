@@ -73,7 +73,7 @@ fn strategies() -> Vec<Box<dyn Fn() -> Box<dyn Strategy>>> {
 fn the_number_of_threads_changes_no_bit() {
     let scene = scene();
     for strategy in strategies() {
-        for colour in [ColourMode::Rgb, ColourMode::Spectral] {
+        for colour in [ColourMode::Rgb, ColourMode::default()] {
             let with = |threads| film(&scene, settings(strategy(), colour, threads, 7));
             let one = with(1);
             assert!(

@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use cohort::embree::BuildQuality;
 use cohort::film::{ExrOptions, write_exr, write_png};
 use cohort::render::{
-    Budget, ColourMode, Ended, MAX_THREADS, Render, Settings, StopFlag, metadata,
+    Budget, ColourMode, Ended, MAX_THREADS, Render, Settings, StopFlag, WavelengthCount, metadata,
 };
 use cohort::scene::{FilmDescription, LoadOptions, PathIntegrator, Scene};
 use cohort::transport::DirectLight;
@@ -54,6 +54,10 @@ pub struct RenderArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(i64, i64)>,
 
+    /// Wavelengths that each path carries
+    #[arg(long, value_name = "N", value_enum, default_value_t = Wavelengths::Four, conflicts_with = "rgb")]
+    wavelengths: Wavelengths,
+
     /// Render in three channels instead of wavelengths
     #[arg(long)]
     rgb: bool,
@@ -85,6 +89,16 @@ pub struct RenderArgs {
     // Last, because its heading holds for all that follows.
     #[command(flatten)]
     strategy: StrategyArgs,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Wavelengths {
+    #[value(name = "1")]
+    One,
+    #[value(name = "4")]
+    Four,
+    #[value(name = "8")]
+    Eight,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -230,7 +244,11 @@ impl RenderArgs {
             colour: if self.rgb {
                 ColourMode::Rgb
             } else {
-                ColourMode::Spectral
+                ColourMode::Spectral(match self.wavelengths {
+                    Wavelengths::One => WavelengthCount::One,
+                    Wavelengths::Four => WavelengthCount::Four,
+                    Wavelengths::Eight => WavelengthCount::Eight,
+                })
             },
             direct_light: match self.direct {
                 Direct::NextEvent => DirectLight::NextEvent,

@@ -13,5 +13,5 @@ pub use driver::{MAX_THREADS, Render, RenderError};
 pub use metadata::metadata;
 pub use progress::{Observer, Progress, StopFlag};
 pub use schedule::Schedule;
-pub use settings::{Budget, ColourMode, Settings};
+pub use settings::{Budget, ColourMode, Settings, WavelengthCount};
 pub use state::{Ended, Outcome, RenderState};

@@ -20,20 +20,41 @@ pub enum Budget {
 }
 
 /// How colours are carried along paths.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColourMode {
-    /// Four wavelengths a path.
-    #[default]
-    Spectral,
+    /// Wavelengths that are drawn for each path.
+    Spectral(WavelengthCount),
     /// Three channels.
     Rgb,
+}
+
+/// How many wavelengths a path carries. The image is the same on average: more of them leave less colour noise, for
+/// more time per path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WavelengthCount {
+    /// One, as in the spectral renderers of old.
+    One,
+    /// Four, which fill a vector register.
+    #[default]
+    Four,
+    /// Eight.
+    Eight,
+}
+
+impl Default for ColourMode {
+    /// Four wavelengths.
+    fn default() -> Self {
+        Self::Spectral(WavelengthCount::default())
+    }
 }
 
 impl ColourMode {
     /// The name in metadata.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Spectral => "spectral, 4 wavelengths a path",
+            Self::Spectral(WavelengthCount::One) => "spectral, 1 wavelength a path",
+            Self::Spectral(WavelengthCount::Four) => "spectral, 4 wavelengths a path",
+            Self::Spectral(WavelengthCount::Eight) => "spectral, 8 wavelengths a path",
             Self::Rgb => "rgb",
         }
     }
@@ -41,7 +62,9 @@ impl ColourMode {
     /// A thread's memory for tracing in this mode.
     pub(super) fn tracer(self) -> Box<dyn TraceBatches> {
         match self {
-            Self::Spectral => Box::<Tracer<Spectral<4>>>::default(),
+            Self::Spectral(WavelengthCount::One) => Box::<Tracer<Spectral<1>>>::default(),
+            Self::Spectral(WavelengthCount::Four) => Box::<Tracer<Spectral<4>>>::default(),
+            Self::Spectral(WavelengthCount::Eight) => Box::<Tracer<Spectral<8>>>::default(),
             Self::Rgb => Box::<Tracer<Rgb>>::default(),
         }
     }
