@@ -76,7 +76,7 @@ pub mod transport;
 pub mod walk;
 
 pub use embree::BuildQuality;
-pub use film::{ExrOptions, Film, Image, read_exr, write_exr, write_png};
+pub use film::{ExrOptions, Film, FilmSums, Image, read_exr, write_exr, write_png};
 pub use render::{
     Budget, ColourMode, Ended, Observer, Outcome, Progress, Render, RenderError, RenderState,
     Settings, StopFlag, WavelengthCount,

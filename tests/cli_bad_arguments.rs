@@ -42,6 +42,7 @@ fn numbers_out_of_range() {
         ),
         ("--size", "10", "a size is written WxH, such as 800x600"),
         ("--wavelengths", "3", "1, 4, 8"),
+        ("--sums", "half", "single, double, compensated"),
         ("--direct", "on", "next-event"),
         ("--build-quality", "best", "high"),
         ("--strategy", "rullette", "go-with-the-winners"),

@@ -127,7 +127,10 @@ fn tiles_do_not_share_their_noise() {
     let tiles = film.tiles();
     for (index, tile) in tiles.iter().enumerate() {
         for other in &tiles[..index] {
-            assert!(tile.pixels[0] != other.pixels[0], "two tiles begin alike");
+            assert!(
+                tile.pixels.get(0) != other.pixels.get(0),
+                "two tiles begin alike"
+            );
         }
     }
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use cohort::embree::BuildQuality;
-use cohort::film::{ExrOptions, write_exr, write_png};
+use cohort::film::{ExrOptions, FilmSums, write_exr, write_png};
 use cohort::render::{
     Budget, ColourMode, Ended, MAX_THREADS, Render, Settings, StopFlag, WavelengthCount, metadata,
 };
@@ -62,6 +62,10 @@ pub struct RenderArgs {
     #[arg(long)]
     rgb: bool,
 
+    /// Precision in which pixels add up their samples
+    #[arg(long, value_name = "PRECISION", value_enum, default_value_t = Sums::Double)]
+    sums: Sums,
+
     /// Set one of the scene's $names
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = parse_definition)]
     definitions: Vec<(String, String)>,
@@ -99,6 +103,16 @@ enum Wavelengths {
     Four,
     #[value(name = "8")]
     Eight,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Sums {
+    /// 32 bits
+    Single,
+    /// 64 bits
+    Double,
+    /// 32 bits, and 32 more for what those lose
+    Compensated,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -249,6 +263,11 @@ impl RenderArgs {
                     Wavelengths::Four => WavelengthCount::Four,
                     Wavelengths::Eight => WavelengthCount::Eight,
                 })
+            },
+            film_sums: match self.sums {
+                Sums::Single => FilmSums::Single,
+                Sums::Double => FilmSums::Double,
+                Sums::Compensated => FilmSums::Compensated,
             },
             direct_light: match self.direct {
                 Direct::NextEvent => DirectLight::NextEvent,

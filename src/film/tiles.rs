@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Image, PixelStatistics};
+use super::{FilmSums, Image, PixelStatistics, TilePixels};
 use crate::scene::ImageSize;
 
 /// Side of a tile in pixels.
@@ -18,18 +18,18 @@ pub struct FilmTile {
     /// Its size.
     pub size: ImageSize,
     /// Its pixels, row by row.
-    pub pixels: Vec<PixelStatistics>,
+    pub pixels: TilePixels,
 }
 
 impl FilmTile {
     /// The tile without samples whose first column and row are `x` and `y`, on a film of size `film`.
-    fn new([x, y]: [u32; 2], film: ImageSize) -> Self {
+    fn new([x, y]: [u32; 2], film: ImageSize, sums: FilmSums) -> Self {
         let size = Self::size_at([x, y], film);
         Self {
             x,
             y,
             size,
-            pixels: vec![PixelStatistics::default(); size.pixels()],
+            pixels: TilePixels::new(sums, size.pixels()),
         }
     }
 
@@ -60,20 +60,21 @@ pub struct Film {
 }
 
 impl Film {
-    /// A film without samples.
-    pub fn new(size: ImageSize) -> Self {
+    /// A film without samples, which adds up in `sums`.
+    pub fn new(size: ImageSize, sums: FilmSums) -> Self {
         let tiles = corners(size)
-            .map(|corner| FilmTile::new(corner, size))
+            .map(|corner| FilmTile::new(corner, size, sums))
             .collect();
         Self { size, tiles }
     }
 
-    /// Whether this is a film of `size` with all its tiles. A film is; what was loaded from a file may be anything.
-    pub fn has_size(&self, size: ImageSize) -> bool {
+    /// Whether this is like `Film::new(size, sums)` but for its samples. What was loaded from a file may be anything.
+    pub fn is_like_new(&self, size: ImageSize, sums: FilmSums) -> bool {
         let is_at = |tile: &FilmTile, [x, y]: [u32; 2]| {
             [tile.x, tile.y] == [x, y]
                 && tile.size == FilmTile::size_at([x, y], size)
-                && tile.pixels.len() == tile.size.pixels()
+                && tile.pixels.sums() == sums
+                && tile.pixels.count() == tile.size.pixels()
         };
         self.size == size
             && self.tiles.len() == corners(size).count()
@@ -116,13 +117,13 @@ impl Film {
     }
 
     /// The pixels in no particular order.
-    pub fn pixels(&self) -> impl Iterator<Item = &PixelStatistics> {
-        self.tiles.iter().flat_map(|tile| &tile.pixels)
+    pub fn pixels(&self) -> impl Iterator<Item = PixelStatistics> {
+        self.tiles.iter().flat_map(|tile| tile.pixels.iter())
     }
 
     /// The number of camera paths of every pixel, row by row from the top, or `None` where all have the same.
     pub fn unequal_samples(&self) -> Option<Vec<u32>> {
-        let first = self.tiles.first()?.pixels.first()?.samples;
+        let first = self.pixels().next()?.samples;
         if self.pixels().all(|pixel| pixel.samples == first) {
             return None;
         }
@@ -142,7 +143,7 @@ impl Film {
         for tile in &self.tiles {
             for (index, pixel) in tile.pixels.iter().enumerate() {
                 let (x, y) = tile.position(index);
-                *image.pixel_mut(x, y) = value(pixel);
+                *image.pixel_mut(x, y) = value(&pixel);
             }
         }
         image
@@ -159,16 +160,25 @@ fn corners(size: ImageSize) -> impl Iterator<Item = [u32; 2]> {
 mod tests {
     use super::*;
 
+    const SIZE: ImageSize = ImageSize {
+        width: 37,
+        height: 18,
+    };
+
+    fn doubles(tile: &mut FilmTile) -> &mut [PixelStatistics] {
+        match &mut tile.pixels {
+            TilePixels::Double(pixels) => pixels,
+            other => panic!("{:?}", other.sums()),
+        }
+    }
+
     #[test]
     fn tiles_cover_every_pixel_once() {
-        let mut film = Film::new(ImageSize {
-            width: 37,
-            height: 18,
-        });
+        let mut film = Film::new(SIZE, FilmSums::Double);
         for tile in film.tiles_mut() {
-            for index in 0..tile.pixels.len() {
+            for index in 0..tile.pixels.count() {
                 let (x, y) = tile.position(index);
-                tile.pixels[index].add_unit(1, [f64::from(x), f64::from(y), 1.0]);
+                doubles(tile)[index].add_unit(1, [f64::from(x), f64::from(y), 1.0]);
             }
         }
         let image = film.image();
@@ -179,7 +189,21 @@ mod tests {
         }
         assert!(film.pixels().all(|pixel| pixel.samples == 1));
         assert_eq!((film.variance(), film.unequal_samples()), (None, None));
-        film.tiles_mut()[0].pixels[1].add_unit(2, [0.0; 3]);
+        doubles(&mut film.tiles_mut()[0])[1].add_unit(2, [0.0; 3]);
         assert_eq!(film.unequal_samples().unwrap()[..3], [1, 3, 1]);
+    }
+
+    #[test]
+    fn a_film_with_other_tiles_is_told() {
+        let film = Film::new(SIZE, FilmSums::Single);
+        assert!(film.is_like_new(SIZE, FilmSums::Single));
+        assert!(!film.is_like_new(SIZE, FilmSums::Double));
+        let (mut less, mut moved, mut cut) = (film.clone(), film.clone(), film);
+        less.tiles.pop();
+        moved.tiles.swap(0, 1);
+        cut.tiles[2].pixels = TilePixels::new(FilmSums::Single, 5);
+        for broken in [less, moved, cut] {
+            assert!(!broken.is_like_new(SIZE, FilmSums::Single));
+        }
     }
 }

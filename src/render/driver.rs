@@ -150,13 +150,18 @@ impl Render {
 
     /// A render that has not traced anything, with this seed of all random streams instead of that of the settings.
     pub fn start(&self, seed: u64) -> RenderState {
-        RenderState::new(self.engine.scene().film.crop.size, seed)
+        RenderState::new(
+            self.engine.scene().film.crop.size,
+            self.settings.film_sums,
+            seed,
+        )
     }
 
     /// Whether [`advance`](Self::advance) can go on from `state`, which may come from a file: whether its image has the
-    /// tiles of this render's. That scene and settings are the same is for the caller to know.
+    /// size and the sums of this render's. That scene and settings are the same is for the caller to know.
     pub fn fits(&self, state: &RenderState) -> bool {
-        state.film.has_size(self.engine.scene().film.crop.size)
+        let size = self.engine.scene().film.crop.size;
+        state.film.is_like_new(size, self.settings.film_sums)
             && state.pass.done.len() == state.film.tiles().len()
     }
 

@@ -35,6 +35,7 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
         add(&format!("strategy.{name}"), value);
     }
     add("colour", settings.colour.name().into());
+    add("film-sums", settings.film_sums.name().into());
     add(
         "direct-light",
         match settings.direct_light {

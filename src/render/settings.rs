@@ -4,6 +4,7 @@ use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::time::Duration;
 
 use crate::embree::BuildQuality;
+use crate::film::FilmSums;
 use crate::spectrum::{Rgb, Spectral};
 use crate::transport::{DirectLight, TraceBatches, Tracer};
 use crate::walk::{Roulette, Strategy};
@@ -83,6 +84,8 @@ pub struct Settings {
     pub seed: u64,
     /// How colours are carried.
     pub colour: ColourMode,
+    /// In which numbers pixels add up their samples.
+    pub film_sums: FilmSums,
     /// How direct light is found.
     pub direct_light: DirectLight,
     /// Most segments of a path, camera ray included; `None` takes what the scene says.
@@ -102,6 +105,7 @@ impl Default for Settings {
             threads: std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN),
             seed: 0,
             colour: ColourMode::default(),
+            film_sums: FilmSums::default(),
             direct_light: DirectLight::default(),
             max_depth: None,
             robust: false,

@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::{Budget, Schedule};
-use crate::film::Film;
+use crate::film::{Film, FilmSums};
 use crate::scene::ImageSize;
 use crate::transport::TraceStatistics;
 
@@ -77,8 +77,8 @@ pub struct Outcome {
 
 impl RenderState {
     /// A render of an image of `size` that has not traced anything.
-    pub(super) fn new(size: ImageSize, seed: u64) -> Self {
-        let film = Film::new(size);
+    pub(super) fn new(size: ImageSize, sums: FilmSums, seed: u64) -> Self {
+        let film = Film::new(size, sums);
         Self {
             seed,
             pass: Pass {

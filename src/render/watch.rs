@@ -77,7 +77,7 @@ impl<'a> Watch<'a> {
         tile: &mut FilmTile,
         tracer: &mut dyn TraceBatches,
     ) -> bool {
-        let paths = tile.pixels.len() as u64 * u64::from(job.samples);
+        let paths = tile.pixels.count() as u64 * u64::from(job.samples);
         if self.should_stop(paths) {
             return false;
         }

@@ -9,7 +9,7 @@ use super::settings::{DirectLight, TransportSettings};
 use super::statistics::TraceStatistics;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, surface, walk_stage};
 use crate::embree::{Coherence, Version};
-use crate::film::{FilmTile, FilterSampler};
+use crate::film::{Accumulator, FilmTile, FilterSampler, PixelStatistics, TilePixels};
 use crate::sampling::{RandomStream, StreamKey};
 use crate::scene::{ConstantLight, Emitter, Projection, Scene};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -222,23 +222,36 @@ impl<C: Colour> Tracer<C> {
 
     /// Adds the finished camera paths to their pixels.
     fn expose(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
+        match &mut tile.pixels {
+            TilePixels::Single(pixels) => self.expose_pixels(engine, job, pixels),
+            TilePixels::Double(pixels) => self.expose_pixels(engine, job, pixels),
+            TilePixels::Compensated(pixels) => self.expose_pixels(engine, job, pixels),
+        }
+    }
+
+    fn expose_pixels<A: Accumulator>(
+        &mut self,
+        engine: &Engine,
+        job: &TileJob,
+        pixels: &mut [PixelStatistics<A>],
+    ) {
         let samples = job.samples as usize;
         // Paths of one population are not independent of each other: together they are one unit.
         let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile);
-        for (index, pixel) in tile.pixels.iter_mut().enumerate() {
-            let mut sum = [0.0; 3];
+        for (index, pixel) in pixels.iter_mut().enumerate() {
+            let mut sum = [A::default(); 3];
             for path in index * samples..(index + 1) * samples {
                 let rgb = self.sample(path);
                 if joint {
                     for (sum, value) in sum.iter_mut().zip(rgb) {
-                        *sum += value;
+                        sum.add(value);
                     }
                 } else {
                     pixel.add_unit(1, rgb);
                 }
             }
             if joint {
-                pixel.add_unit(job.samples, sum);
+                pixel.add_unit(job.samples, sum.map(A::total));
             }
         }
     }
