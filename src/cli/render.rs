@@ -162,6 +162,7 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
         half_precision: film.half_precision,
         samples: outcome.film.unequal_samples(),
         attributes: metadata(&render, &outcome),
+        ..ExrOptions::default()
     };
     write_exr(&files.exr, &image, &options)?;
     write_png(&files.png, &image)?;

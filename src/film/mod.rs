@@ -8,10 +8,10 @@ mod statistics;
 mod tiles;
 mod whole_file;
 
-pub use exr_file::{ExrOptions, read_exr, write_exr};
+pub use exr_file::{ExrOptions, read_exr, read_exr_variance, write_exr};
 pub use filter::{FilterSample, FilterSampler};
 pub use image::{FilmFileError, Image};
-pub use png_file::write_png;
+pub use png_file::{srgb_bytes, write_png};
 pub use statistics::PixelStatistics;
 pub use tiles::{Film, FilmTile, TILE_SIDE};
 pub use whole_file::WholeFile;

@@ -13,11 +13,7 @@ const SHOULDER: f32 = 0.8;
 /// with its hue kept: a lamp is white or coloured instead of cut off channel by channel.
 pub fn write_png(path: &Path, image: &Image) -> Result<(), FilmFileError> {
     let size = image.size();
-    let bytes: Vec<u8> = image
-        .pixels()
-        .iter()
-        .flat_map(|&pixel| tone_map(pixel).map(encode))
-        .collect();
+    let bytes = srgb_bytes(image);
     WholeFile::create(path)?.finish(|writer| {
         let refuse = |error: png::EncodingError| FilmFileError::Encode {
             path: path.to_owned(),
@@ -31,6 +27,14 @@ pub fn write_png(path: &Path, image: &Image) -> Result<(), FilmFileError> {
         png.write_image_data(&bytes).map_err(refuse)?;
         png.finish().map_err(refuse)
     })
+}
+
+/// What [`write_png`] writes: three bytes of tone-mapped sRGB by pixel, row by row from the top.
+pub fn srgb_bytes(image: &Image) -> Vec<u8> {
+    let pixels = image.pixels().iter();
+    pixels
+        .flat_map(|&pixel| tone_map(pixel).map(encode))
+        .collect()
 }
 
 /// Linear values in [0, 1]; negative ones (colours beyond sRGB) become 0.
