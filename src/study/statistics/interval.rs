@@ -172,3 +172,16 @@ fn all_positive(values: &[f64]) -> bool {
 fn unknown_from_null<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
+
+#[cfg(test)]
+mod tests {
+    use serde::de::value::{Error, UnitDeserializer};
+
+    use super::*;
+
+    #[test]
+    fn an_unknown_estimate_is_read_from_null() {
+        let null = UnitDeserializer::<Error>::new();
+        assert!(unknown_from_null(null).unwrap().is_nan());
+    }
+}
