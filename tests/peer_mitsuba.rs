@@ -61,7 +61,7 @@ fn start(variant: &str) -> Option<MitsubaPeer> {
 }
 
 fn ours(samples: u32) -> Image {
-    let mut scene = Scene::load(&camera(), &LoadOptions::default()).expect("a scene");
+    let mut scene = Scene::load(camera(), &LoadOptions::default()).expect("a scene");
     let (width, height) = (i64::from(SIZE.width), i64::from(SIZE.height));
     scene.film = scene.film.resized(width, height).expect("a size");
     let settings = Settings {
@@ -133,9 +133,14 @@ fn budgets_are_met_and_one_thread_is_one() {
             let target = PeerTarget::Seconds(until);
             let stop = StopFlag::new();
             state.advance(&mut peer, target, &stop).expect("an image");
-            // 1 % of the whole.
-            let off = state.seconds() - until;
-            assert!(off.abs() < 0.02, "{variant}: {} s", state.seconds());
+            // 1 % of the whole; nobody can foretell how long a busy machine runs something else.
+            let denied = state.seconds() - (processor_seconds(peer.process()) - before);
+            let off = (state.seconds() - until).abs();
+            assert!(
+                off < 0.02 + denied.max(0.0),
+                "{variant}: {} s",
+                state.seconds()
+            );
         }
         assert!(state.samples_per_pixel() > 20);
         // The transfer of images and the like are used beside the rendering.

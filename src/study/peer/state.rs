@@ -142,3 +142,55 @@ impl PeerState {
         image
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Advances a state by what a renderer of this speed would take, which varies by a tenth from chunk to chunk.
+    fn seconds_by(until: f64, overhead: f64, per_sample: f64) -> f64 {
+        let size = ImageSize {
+            width: 1,
+            height: 1,
+        };
+        let mut state = PeerState::new(size, SeedSequence::new(size, 0, 0, 1));
+        let mut speed = 3.0 * per_sample;
+        for chunk in 0.. {
+            let target = PeerTarget::Seconds(until);
+            let samples = state.next_chunk(target, until / CHUNKS_PER_TURN, speed) as f64;
+            if samples == 0.0 {
+                break;
+            }
+            let varied = if chunk % 2 == 0 { 0.9 } else { 1.1 };
+            let seconds = overhead + samples * per_sample * varied;
+            state.seconds += seconds;
+            speed = seconds / samples;
+        }
+        state.seconds
+    }
+
+    #[test]
+    fn turns_end_within_one_percent() {
+        for overhead in [0.0, 0.02] {
+            for per_sample in [0.001, 0.02, 0.15] {
+                let off = seconds_by(10.0, overhead, per_sample) / 10.0 - 1.0;
+                assert!(off.abs() < 0.01, "{overhead} {per_sample}: {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn samples_are_counted_to_the_last() {
+        let size = ImageSize {
+            width: 1,
+            height: 1,
+        };
+        let mut state = PeerState::new(size, SeedSequence::new(size, 0, 0, 1));
+        let target = PeerTarget::SamplesPerPixel(25);
+        assert_eq!(state.next_chunk(target, 1.0, 0.1), 10);
+        state.samples_per_pixel = 20;
+        assert_eq!(state.next_chunk(target, 1.0, 0.1), 5);
+        state.samples_per_pixel = 25;
+        assert_eq!(state.next_chunk(target, 1.0, 0.1), 0);
+    }
+}
