@@ -9,7 +9,7 @@ use crate::scene::ImageSize;
 /// Mitsuba's scalar variants multiply the seed by the number of pixels, in 32 bits, and start the generator of the i-th
 /// pixel, counted in square blocks of at most 64 x 64, from that number plus i. So seeds are taken so far apart that no
 /// two images of a study start a generator from the same number, as long as there are numbers: 2^32 over the pixels.
-/// They come in a random order, for images by the seeds 0, 1, 2, … turn out correlated.
+/// They come in a random order, for generators that start from evenly spaced numbers are related to each other.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SeedSequence {
     /// Distance of neighbouring seeds.
