@@ -145,7 +145,7 @@ pub struct Competitor {
 }
 
 /// Files of a competitor's images.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Images {
     /// The mean of all repetitions, EXR.
     pub exr: String,
