@@ -7,6 +7,7 @@ packages=(
     build-essential pkg-config libembree-dev libclang-dev   # to build
     ca-certificates curl git                                # to get Rust and the sources
     python3 python3-venv debootstrap                        # to test
+    chromium chromium-driver                                # to test the reports' page
 )
 
 installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }

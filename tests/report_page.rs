@@ -113,7 +113,7 @@ fn the_data_survives_its_file() {
 fn page_and_markdown_open_with_the_answer() {
     let folder = report("report-answer", &comparison());
     let headline = "roulette and particle-filter lead; no difference is shown between them.";
-    let slower = "go-with-the-winners is slower than roulette: it needs 1.6 times the time for the same error";
+    let slower = "go-with-the-winners is slower than roulette: it needs 1.61 times the time for the same error";
     let page = text(&folder, "index.html");
     assert!(page.contains(&format!("<h1>{headline}</h1>")) && page.contains(slower));
     assert!(page.contains("A Processor &lt;of some kind&gt; &amp; more"));
@@ -132,7 +132,7 @@ fn an_accuracy_study_has_verdicts() {
          no time removes."
     ), "{markdown}");
     assert!(markdown.contains("- wavelengths 4 (default): costs 21 % time, buys 9 % error."));
-    assert!(markdown.contains("−3.1 % (biased) (−3.4 to −2.8)"));
+    assert!(markdown.contains("−3.10 % (biased) (−3.40 to −2.80)"));
     // Pairs of settings with each other are not what was asked.
     assert!(!markdown.contains("wavelengths-8 against wavelengths-4"));
 }

@@ -1,11 +1,9 @@
 //! The answer in sentences, with which every report opens.
 
-use super::numbers::{counted, listed, shown, shown_percent, significant};
-use crate::study::results::{Competitor, Finding, Pair, Results, StudyBudget, StudyKind};
+use super::cautions::cautions;
+use super::numbers::{listed, shown, significant};
+use crate::study::results::{Competitor, Finding, Pair, Results, StudyKind};
 use crate::study::statistics::Interval;
-
-/// The largest deviation of the budgets that passes without a word.
-const TOLERATED_DEVIATION: f64 = 0.01;
 
 /// What the study says, in plain sentences.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -82,7 +80,8 @@ fn inverse(ratio: &Interval) -> Interval {
     }
 }
 
-fn in_brackets(range: Option<String>) -> String {
+/// An interval after what it belongs to.
+pub fn in_brackets(range: Option<String>) -> String {
     range.map_or_else(String::new, |range| format!(" (95 % interval {range})"))
 }
 
@@ -205,59 +204,6 @@ fn verdict_sentences(results: &Results) -> Vec<String> {
     verdicts.collect()
 }
 
-fn cautions(results: &Results) -> Vec<String> {
-    let mut cautions = Vec::new();
-    let conditions = &results.conditions;
-    if conditions.repetitions < 2 {
-        cautions.push(
-            "There was one repetition only, so no interval is known. With --repeat 2 or more there are intervals."
-                .to_owned(),
-        );
-    }
-    if results.reference.variance.is_none() {
-        cautions.push(
-            "The error of the reference is not known and not subtracted: all errors include it, which makes ratios look \
-             closer to 1 than they are."
-                .to_owned(),
-        );
-    }
-    if let (StudyBudget::Seconds(_), Some(deviation)) =
-        (conditions.budget, conditions.budget_deviation)
-        && deviation > TOLERATED_DEVIATION
-    {
-        cautions.push(format!(
-            "The competitors' times differ by up to {} % from their mean.",
-            significant(deviation * 100.0, 2)
-        ));
-    }
-    for competitor in &results.competitors {
-        let dropped: u64 = competitor.dropped_samples.iter().sum();
-        if dropped > 0 {
-            cautions.push(format!(
-                "{} dropped {} that were not finite or negative.",
-                competitor.name,
-                counted(dropped, "sample")
-            ));
-        }
-        // An accuracy study shows bias as a result.
-        if results.kind == StudyKind::Compare
-            && let Some(snapshot) = competitor.snapshots.last()
-            && let Some((low, high)) = snapshot.errors.bias.bounds
-            && (low > 0.0 || high < 0.0)
-        {
-            let bias = shown_percent(&snapshot.errors.bias);
-            cautions.push(format!(
-                "The image of {} is {} off in its mean{}: an error that more time may not remove. One in twenty intervals \
-                 excludes 0 by chance.",
-                competitor.name,
-                bias.value,
-                in_brackets(bias.range.map(|range| range + " %"))
-            ));
-        }
-    }
-    cautions
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -288,8 +234,8 @@ mod tests {
         let slower = pair(0.5, Some((0.4, 0.625)), Finding::FirstBetter);
         assert_eq!(
             pair_sentence(&slower),
-            "particle-filter is slower than roulette: it needs 2.0 times the time for the same error (95 % interval 1.6 \
-             to 2.5)."
+            "particle-filter is slower than roulette: it needs 2.00 times the time for the same error (95 % interval 1.60 \
+             to 2.50)."
         );
         let unbounded = pair(0.5, Some((-0.1, 0.8)), Finding::FirstBetter);
         assert!(pair_sentence(&unbounded).ends_with("(95 % interval from 1.25 upwards)."));

@@ -4,41 +4,49 @@ use std::ops::Range;
 
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 
+/// Steps within a power of ten, from many to few.
+const STEPS: [&[f64]; 4] = [
+    &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
+    &[1.0, 2.0, 3.0, 5.0],
+    &[1.0, 2.0, 5.0],
+    &[1.0],
+];
+
 /// A logarithmic axis for positive values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LogAxis(Range<f64>);
+pub struct LogAxis {
+    range: Range<f64>,
+    ticks: Vec<f64>,
+}
 
 impl LogAxis {
-    /// The axis that shows all of these positive values, with a little room.
-    pub fn around(values: impl Iterator<Item = f64>) -> Self {
+    /// The axis that shows all of these positive values, with a little room and at most so many ticks.
+    pub fn around(values: impl Iterator<Item = f64>, most_ticks: usize) -> Self {
         let logs = values.filter(|value| *value > 0.0 && value.is_finite());
         let (low, high) = logs
             .map(f64::log10)
             .fold((f64::MAX, f64::MIN), |(low, high), log| {
                 (low.min(log), high.max(log))
             });
-        if low > high {
-            return Self(0.1..1.0);
-        }
+        let (low, high) = if low > high { (-1.0, 0.0) } else { (low, high) };
         let room = ((high - low) * 0.04).max(0.02);
-        Self(10_f64.powf(low - room)..10_f64.powf(high + room))
-    }
-
-    /// Round numbers on the axis: 1, 2, 5 and more where there are few powers of ten.
-    fn ticks(&self) -> Vec<f64> {
-        let (start, end) = (self.0.start.log10(), self.0.end.log10());
-        let mantissas: &[f64] = match end - start {
-            ..0.7 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
-            ..1.6 => &[1.0, 2.0, 3.0, 5.0],
-            ..3.0 => &[1.0, 2.0, 5.0],
-            _ => &[1.0],
+        let range = 10_f64.powf(low - room)..10_f64.powf(high + room);
+        let powers = (low - room).floor() as i32..=(high + room).ceil() as i32;
+        let ticks = |steps: &[f64]| -> Vec<f64> {
+            let powers = powers.clone().map(|power| 10_f64.powi(power));
+            let all = powers.flat_map(|power| steps.iter().map(move |step| step * power));
+            all.filter(|tick| range.contains(tick)).collect()
         };
-        let powers = start.floor() as i32..=end.ceil() as i32;
-        let all = powers.flat_map(|power| {
-            let power = 10_f64.powi(power);
-            mantissas.iter().map(move |mantissa| mantissa * power)
+        let few_enough = STEPS
+            .iter()
+            .map(|steps| ticks(steps))
+            .find(|ticks| ticks.len() <= most_ticks);
+        let ticks = few_enough.unwrap_or_else(|| {
+            let powers = ticks(&[1.0]);
+            let step = powers.len().div_ceil(most_ticks.max(1));
+            powers.into_iter().step_by(step).collect()
         });
-        all.filter(|tick| self.0.contains(tick)).collect()
+        Self { range, ticks }
     }
 }
 
@@ -48,17 +56,18 @@ impl Ranged for LogAxis {
 
     /// What is not positive or lies below the axis is drawn at its lower end.
     fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        let value = value.max(self.0.start);
-        let share = (value / self.0.start).log10() / (self.0.end / self.0.start).log10();
+        let value = value.max(self.range.start);
+        let share =
+            (value / self.range.start).log10() / (self.range.end / self.range.start).log10();
         limit.0 + (share * f64::from(limit.1 - limit.0)).round() as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
-        self.ticks()
+        self.ticks.clone()
     }
 
     fn range(&self) -> Range<f64> {
-        self.0.clone()
+        self.range.clone()
     }
 }
 
@@ -67,11 +76,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_are_round_and_at_least_two() {
-        let two_decades = LogAxis::around([0.011, 1.9].into_iter());
-        assert_eq!(two_decades.ticks().len(), 7);
-        let short = LogAxis::around([1.2, 2.4].into_iter());
-        assert_eq!(short.ticks(), [1.5, 2.0]);
+    fn ticks_are_round_and_few_enough() {
+        let two_decades = LogAxis::around([0.011, 1.9].into_iter(), 8);
+        assert_eq!(
+            two_decades.ticks,
+            [0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0]
+        );
+        let short = LogAxis::around([1.2, 2.4].into_iter(), 8);
+        assert_eq!(short.ticks, [1.5, 2.0]);
+        let long = LogAxis::around([1e-9, 1e9].into_iter(), 5);
+        assert!(long.ticks.len() <= 5);
         assert_eq!(short.map(&-1.0, (10, 110)), 10);
+        assert!(LogAxis::around([].into_iter(), 8).range.contains(&0.5));
     }
 }

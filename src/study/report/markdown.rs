@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::answer::Answer;
 use super::facts::{DEFINITIONS, facts};
-use super::tables::{Cell, Table};
+use super::table::{Cell, Table};
 use crate::study::results::Results;
 
 /// The whole file.

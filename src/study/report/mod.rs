@@ -1,6 +1,7 @@
 //! The report of a study: one page that opens with the answer, and the same as Markdown, CSV, JSON and a figure.
 
 mod answer;
+mod cautions;
 mod csv_file;
 mod facts;
 mod log_axis;
@@ -9,6 +10,7 @@ mod numbers;
 mod page;
 mod pictures;
 mod plots;
+mod table;
 mod tables;
 mod viewer;
 

@@ -29,14 +29,17 @@ pub fn shown(interval: &Interval) -> Shown {
             range: Some("0 to 0".to_owned()),
         };
     }
-    let magnitude = magnitude(largest);
+    let magnitude = magnitude_of(largest);
     let power = power_to_split_off(magnitude);
     let scale = 10_f64.powi(-power);
     // No more than five digits, however narrow the interval is.
     let finest = 4 - (magnitude - power);
     let half = (high - low) / 2.0 * scale;
     let decimals = if half > 0.0 {
-        (-half.log10().floor()).min(f64::from(finest)) as i32
+        // One digit of the half width, or two if the first is small: else 0.96 to 1.14 would read 1.0 to 1.1.
+        let first = magnitude_of(half);
+        let is_small = half < 5.0 * 10_f64.powi(first);
+        (i32::from(is_small) - first).min(finest)
     } else {
         finest
     };
@@ -87,7 +90,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
         .parse()
         .unwrap_or(value);
-    let magnitude = magnitude(rounded);
+    let magnitude = magnitude_of(rounded);
     let power = power_to_split_off(magnitude);
     let decimals = (digits as i32 - 1 - (magnitude - power)).max(0) as usize;
     let text = minus(format!("{:.decimals$}", rounded * 10_f64.powi(-power)));
@@ -97,13 +100,18 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// The same without zeros after the last other decimal.
+/// The same without zeros after the last other decimal, and 10⁷ instead of 1 × 10⁷.
 pub fn short(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
-    if !text.contains('.') || text.contains('×') {
-        return text;
+    let (mantissa, power) = text.split_at(text.find(" × ").unwrap_or(text.len()));
+    let mantissa = match mantissa.contains('.') {
+        true => mantissa.trim_end_matches('0').trim_end_matches('.'),
+        false => mantissa,
+    };
+    match (mantissa, power.strip_prefix(" × ")) {
+        ("1", Some(power)) => power.to_owned(),
+        _ => format!("{mantissa}{power}"),
     }
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Seconds in a unit that suits them.
@@ -134,7 +142,7 @@ pub fn counted(count: u64, unit: &str) -> String {
     }
 }
 
-fn magnitude(value: f64) -> i32 {
+fn magnitude_of(value: f64) -> i32 {
     value.abs().log10().floor() as i32
 }
 
@@ -189,11 +197,11 @@ mod tests {
     #[test]
     fn an_interval_decides_the_digits() {
         assert_eq!(text(0.6231, 0.5512, 0.7049), "0.62 [0.55 to 0.70]");
-        assert_eq!(text(1.0, 0.99871, 1.00133), "1.000 [0.999 to 1.001]");
-        assert_eq!(text(-0.0004, -0.0121, 0.0113), "0.00 [−0.01 to 0.01]");
+        assert_eq!(text(1.0, 0.99871, 1.00133), "1.0000 [0.9987 to 1.0013]");
+        assert_eq!(text(-0.0004, -0.0121, 0.0113), "0.000 [−0.012 to 0.011]");
         assert_eq!(
             text(5.12e-5, 4.81e-5, 5.49e-5),
-            "5.1 × 10⁻⁵ [(4.8 to 5.5) × 10⁻⁵]"
+            "5.12 × 10⁻⁵ [(4.81 to 5.49) × 10⁻⁵]"
         );
         assert_eq!(text(123.0, 80.0, 190.0), "123 [80 to 190]");
         assert_eq!(text(2.0, 2.0, 2.0), "2.0000 [2.0000 to 2.0000]");
@@ -208,6 +216,8 @@ mod tests {
         assert_eq!(significant(-0.0051, 2), "−0.0051");
         assert_eq!(significant(f64::NAN, 3), "not known");
         assert_eq!(short(30.0, 3), "30");
+        assert_eq!(short(1e7, 2), "10⁷");
+        assert_eq!(short(2.5e-4, 2), "2.5 × 10⁻⁴");
         assert_eq!(duration(1800.0), "30 min");
         assert_eq!(duration(9000.0), "2.5 h");
     }

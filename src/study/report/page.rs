@@ -7,9 +7,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::ReportError;
 use super::answer::Answer;
 use super::facts::{DEFINITIONS, budget, facts};
-use super::numbers::{counted, significant};
+use super::numbers::counted;
 use super::plots::{Plot, plots};
-use super::tables::{Cell, Table};
+use super::table::{Cell, Table};
 use super::viewer::{CompetitorImages, sections, swatch};
 use super::{CSV, JSON, MARKDOWN};
 use crate::study::results::{Pair, Results, StudyKind};
@@ -81,12 +81,12 @@ fn opening(results: &Results, answer: &Answer, title: &str) -> Markup {
             @if results.kind == StudyKind::Compare && results.pairs.len() == answer.findings.len() {
                 (findings_with_bars(results, answer))
             } @else {
-                ul.findings { @for finding in &answer.findings { li { (finding) } } }
+                ul.findings { @for finding in &answer.findings { li { (unbroken(finding)) } } }
             }
             @if !answer.cautions.is_empty() {
                 aside.cautions aria-label="To be kept in mind" {
                     b { "To be kept in mind" }
-                    ul { @for caution in &answer.cautions { li { (caution) } } }
+                    ul { @for caution in &answer.cautions { li { (unbroken(caution)) } } }
                 }
             }
         }
@@ -108,10 +108,10 @@ fn findings_with_bars(results: &Results, answer: &Answer) -> Markup {
         * 1.08;
     html! {
         ul.findings.with-bars { @for (pair, finding) in results.pairs.iter().zip(&answer.findings) {
-            li { p { (finding) } (bar(pair, widest)) }
+            li { p { (unbroken(finding)) } (bar(pair, widest)) }
         } }
         p.note {
-            "Error is relative mean squared error at the whole budget. Bars show the ratio of efficiencies with its 95 % interval on a "
+            "Error is relative mean squared error at the whole budget. Bars show the ratio of efficiencies with its 95\u{a0}% interval on a "
             "logarithmic axis; where a bar holds the line at 1, no difference is shown."
         }
     }
@@ -145,10 +145,15 @@ fn bar(pair: &Pair, widest: f64) -> Markup {
                 i.dot .(clear) style=(format!("left:{middle:.2}%")) {}
             }
             div.ends {
-                span { "← " (pair.first) } span { (significant(ratio.estimate, 3)) "×" } span { (pair.second) " →" }
+                span { "← " (pair.first) " better" } span { "1" } span { (pair.second) " better →" }
             }
         }
     }
+}
+
+/// The text with its percent signs kept beside their numbers.
+fn unbroken(text: &str) -> String {
+    text.replace(" %", "\u{a0}%")
 }
 
 fn plot_section(results: &Results, plots: &[Plot]) -> Markup {
@@ -157,7 +162,7 @@ fn plot_section(results: &Results, plots: &[Plot]) -> Markup {
         section id="plots" {
             h2 { "Error over cost" }
             p.note {
-                "Both axes are logarithmic." @if banded { " Bands are 95 % intervals over the repetitions." }
+                "Both axes are logarithmic." @if banded { " Bands are 95\u{a0}% intervals over the repetitions." }
                 @else { " One repetition leaves no bands." }
             }
             div.plots { @for plot in plots {

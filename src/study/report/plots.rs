@@ -45,6 +45,8 @@ pub struct Plot {
 struct Axes {
     title: &'static str,
     cost: &'static str,
+    /// Numbers that have room beside each other below the axis.
+    most_ticks: usize,
     error: &'static str,
     cost_of: fn(&Snapshot) -> Option<f64>,
     error_of: fn(&Snapshot) -> Interval,
@@ -54,6 +56,7 @@ const AXES: [Axes; 3] = [
     Axes {
         title: "Relative MSE over time",
         cost: "seconds",
+        most_ticks: 8,
         error: "relative MSE",
         cost_of: |snapshot| Some(snapshot.seconds),
         error_of: |snapshot| snapshot.errors.relative_mse,
@@ -61,6 +64,7 @@ const AXES: [Axes; 3] = [
     Axes {
         title: "RMSE over time",
         cost: "seconds",
+        most_ticks: 8,
         error: "RMSE",
         cost_of: |snapshot| Some(snapshot.seconds),
         error_of: |snapshot| snapshot.errors.rmse,
@@ -68,6 +72,7 @@ const AXES: [Axes; 3] = [
     Axes {
         title: "Relative MSE over rays",
         cost: "rays",
+        most_ticks: 4,
         error: "relative MSE",
         cost_of: |snapshot| snapshot.rays,
         error_of: |snapshot| snapshot.errors.relative_mse,
@@ -144,12 +149,13 @@ fn series<'a>(competitor: &'a Competitor, colour: &str, axes: &Axes) -> Series<'
 
 fn draw(axes: &Axes, all: &[Series]) -> Result<String, String> {
     let points = || all.iter().flat_map(|series| &series.points);
-    let costs = LogAxis::around(points().map(|point| point.0));
-    let errors = LogAxis::around(points().flat_map(|(_, error)| {
+    let costs = LogAxis::around(points().map(|point| point.0), axes.most_ticks);
+    let errors = points().flat_map(|(_, error)| {
         let (low, high) = error.bounds.unwrap_or((error.estimate, error.estimate));
         // A lower end near 0 would stretch the axis without limit.
         [low.max(error.estimate * LOWEST_SHOWN), error.estimate, high]
-    }));
+    });
+    let errors = LogAxis::around(errors, 9);
     let longest = all
         .iter()
         .map(|series| shortened(series.name).chars().count());
@@ -161,7 +167,7 @@ fn draw(axes: &Axes, all: &[Series]) -> Result<String, String> {
             .margin(8)
             .margin_right(label_width)
             .x_label_area_size(52)
-            .y_label_area_size(92)
+            .y_label_area_size(84)
             .build_cartesian_2d(costs, errors)
             .map_err(message)?;
         draw_grid(&mut chart, axes).map_err(message)?;

@@ -1,63 +1,10 @@
 //! The report's tables, from which both the page and the Markdown are made.
 
-use super::numbers::{Shown, duration, shown, shown_percent, significant};
+use super::numbers::{duration, shown_percent, significant};
+use super::table::{Cell, Table};
 use crate::study::results::{
     Competitor, ErrorIntervals, Finding, Pair, Results, Snapshot, StudyKind,
 };
-use crate::study::statistics::Interval;
-
-/// A table whose first column names the rows.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Table {
-    /// What it shows.
-    pub title: String,
-    /// What to know when reading it; may be empty.
-    pub note: String,
-    /// Heads of the columns.
-    pub columns: Vec<String>,
-    /// Rows of as many cells.
-    pub rows: Vec<Vec<Cell>>,
-}
-
-/// A cell: a value, and what is said of it in small print.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Cell {
-    /// The value.
-    pub value: String,
-    /// Its interval or another remark; may be empty.
-    pub detail: String,
-}
-
-impl From<Shown> for Cell {
-    fn from(shown: Shown) -> Self {
-        Self {
-            value: shown.value,
-            detail: shown.range.unwrap_or_default(),
-        }
-    }
-}
-
-impl From<String> for Cell {
-    fn from(value: String) -> Self {
-        Self {
-            value,
-            detail: String::new(),
-        }
-    }
-}
-
-impl From<&Interval> for Cell {
-    fn from(interval: &Interval) -> Self {
-        shown(interval).into()
-    }
-}
-
-impl Cell {
-    /// A value that a competitor may not have.
-    fn or_dash(interval: Option<&Interval>) -> Self {
-        interval.map_or_else(|| "–".to_owned().into(), Into::into)
-    }
-}
 
 /// All tables, in the order of the report.
 pub fn tables(results: &Results) -> Vec<Table> {
@@ -68,6 +15,7 @@ pub fn tables(results: &Results) -> Vec<Table> {
     tables.extend([
         ratios(results),
         measures(results),
+        regions(results),
         efficiencies(results),
         convergence(results),
         settings(results),
@@ -194,19 +142,7 @@ fn of_measures(results: &Results, title: &str, note: &str, measures: &[Measure])
 fn measures(results: &Results) -> Table {
     let mut measures: Vec<Measure> = vec![
         ("Relative MSE", |errors| (&errors.relative_mse).into()),
-        ("of it, reflected light", |errors| {
-            (&errors.reflected_relative_mse).into()
-        }),
-        ("of it, lights seen directly", |errors| {
-            (&errors.lit_relative_mse).into()
-        }),
         ("MSE", |errors| (&errors.mse).into()),
-        ("of it, reflected light", |errors| {
-            (&errors.reflected_mse).into()
-        }),
-        ("of it, lights seen directly", |errors| {
-            (&errors.lit_mse).into()
-        }),
         ("RMSE", |errors| (&errors.rmse).into()),
         ("Bias", |errors| shown_percent(&errors.bias).into()),
         ("Variance", |errors| match errors.variance {
@@ -215,16 +151,37 @@ fn measures(results: &Results) -> Table {
         }),
     ];
     let has_flip = |competitor: &Competitor| {
-        competitor
-            .snapshots
-            .last()
-            .is_some_and(|snapshot| snapshot.errors.flip.is_some())
+        let snapshot = competitor.snapshots.last();
+        snapshot.is_some_and(|snapshot| snapshot.errors.flip.is_some())
     };
     if results.competitors.iter().any(has_flip) {
         measures.push(("FLIP", |errors| Cell::or_dash(errors.flip.as_ref())));
     }
-    let note = "At the whole budget, with 95 % intervals over the repetitions. Each part is the mean over its own pixels.";
+    let note = "At the whole budget, with 95 % intervals over the repetitions.";
     of_measures(results, "Errors", note, &measures)
+}
+
+fn regions(results: &Results) -> Table {
+    let note = "The same apart for pixels that see a light directly and for all others, each the mean over its own pixels.";
+    of_measures(
+        results,
+        "Errors by region",
+        note,
+        &[
+            ("Relative MSE of reflected light", |errors| {
+                (&errors.reflected_relative_mse).into()
+            }),
+            ("Relative MSE of lights seen directly", |errors| {
+                (&errors.lit_relative_mse).into()
+            }),
+            ("MSE of reflected light", |errors| {
+                (&errors.reflected_mse).into()
+            }),
+            ("MSE of lights seen directly", |errors| {
+                (&errors.lit_mse).into()
+            }),
+        ],
+    )
 }
 
 fn efficiencies(results: &Results) -> Table {

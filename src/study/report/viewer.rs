@@ -5,7 +5,7 @@ use std::path::Path;
 use maud::{Markup, html};
 
 use super::ReportError;
-use super::numbers::{counted, significant};
+use super::numbers::{counted, short, significant};
 use super::pictures::{Picture, data_uri, read};
 use super::plots::colour;
 use crate::study::results::{Competitor, Results, StudyKind};
@@ -203,7 +203,7 @@ fn scale(relative_squared_error: f64) -> Markup {
         div.scale role="img" aria-label=(format!("Colours from 0, black, to a relative error of {}, light yellow", significant(top, 2))) {
             div style=(format!("background:linear-gradient(90deg,{})", colours.join(","))) {}
             span { @for number in 0..=NUMBERS {
-                i { (significant(top * f64::from(number) / f64::from(NUMBERS), 2)) }
+                i { (short(top * f64::from(number) / f64::from(NUMBERS), 3)) }
             } }
         }
     }
