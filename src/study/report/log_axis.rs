@@ -77,11 +77,10 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_few_enough() {
-        let two_decades = LogAxis::around([0.011, 1.9].into_iter(), 8);
-        assert_eq!(
-            two_decades.ticks,
-            [0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0]
-        );
+        let axis = LogAxis::around([0.011, 1.9].into_iter(), 8);
+        let ticks = axis.ticks.iter().map(|tick| format!("{tick:.2}"));
+        let ticks: Vec<String> = ticks.collect();
+        assert_eq!(ticks.join(" "), "0.01 0.02 0.05 0.10 0.20 0.50 1.00 2.00");
         let short = LogAxis::around([1.2, 2.4].into_iter(), 8);
         assert_eq!(short.ticks, [1.5, 2.0]);
         let long = LogAxis::around([1e-9, 1e9].into_iter(), 5);
