@@ -1,13 +1,23 @@
 #!/usr/bin/env bash
-# Installs what Cohort needs on Debian 12 or 13: Embree, build tools, Python for the tests, and Rust by rustup.
+# Installs what Cohort needs on Debian 12 or 13: Embree, build tools and Rust by rustup; with the argument `tests`, what they need as well.
 # Does nothing where everything is there already. Run as root or by somebody who may use sudo.
 set -euo pipefail
 
 packages=(
     build-essential pkg-config libembree-dev libclang-dev   # to build
     ca-certificates curl git                                # to get Rust and the sources
-    python3 python3-venv debootstrap                        # to test
 )
+case "${1:-}" in
+    '') ;;
+    tests)
+        packages+=(
+            python3 python3-venv libllvm19                  # Mitsuba, which the tests compare with
+            chromium chromium-driver                        # to open the pages of reports
+            debootstrap                                     # to test on Debian 13
+        )
+        ;;
+    *) echo "usage: scripts/install-debian.sh [tests]" >&2; exit 2 ;;
+esac
 
 installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 

@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-scripts/install-debian.sh
+scripts/install-debian.sh tests
 export PATH="${CARGO_HOME:-$HOME/.cargo}/bin:$PATH"
 if [ -z "${COHORT_MITSUBA_PYTHON:-}" ]; then
     COHORT_MITSUBA_PYTHON="$(scripts/mitsuba-venv.sh)"

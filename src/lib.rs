@@ -56,7 +56,8 @@
 //! | module | what it has |
 //! |---|---|
 //! | [`scene`] | scene files and what they state: shapes, materials, emitters, the camera |
-//! | [`render`] | budgets, threads, progress, interruption |
+//! | [`render`] | budgets, threads, progress, interruption, resuming |
+//! | [`study`] | comparisons at equal budgets, with intervals and reports |
 //! | [`film`] | images, their noise, EXR and PNG files |
 //! | [`walk`] | the strategies |
 //! | [`transport`] | the stages that move batches of paths |
@@ -71,13 +72,15 @@ pub mod render;
 pub mod sampling;
 pub mod scene;
 pub mod spectrum;
+pub mod study;
 pub mod transport;
 pub mod walk;
 
 pub use embree::BuildQuality;
-pub use film::{ExrOptions, Film, Image, read_exr, write_exr, write_png};
+pub use film::{ExrOptions, Film, FilmSums, Image, read_exr, write_exr, write_png};
 pub use render::{
-    Budget, ColourMode, Ended, Observer, Outcome, Progress, Render, RenderError, Settings, StopFlag,
+    Budget, ColourMode, Ended, Observer, Outcome, Progress, Render, RenderError, RenderState,
+    Settings, StopFlag, WavelengthCount,
 };
 pub use scene::{LoadOptions, Scene, SceneError};
 pub use transport::DirectLight;

@@ -20,6 +20,7 @@ fn numbers_out_of_range() {
         ("--spp", "99999999999", "from 1 to 4294967295"),
         ("--spp", "many", "from 1 to 4294967295"),
         ("--max-depth", "0", "from 1 to 4294967295"),
+        ("--rays", "0", "from 1 to 18446744073709551615"),
         ("--seed", "1.5", "from 0 to 18446744073709551615"),
         ("--time", "0s", "the time must be longer than 0"),
         ("--time", "5", "written with units, such as 90s"),
@@ -40,6 +41,8 @@ fn numbers_out_of_range() {
             "a size is written WxH, such as 800x600",
         ),
         ("--size", "10", "a size is written WxH, such as 800x600"),
+        ("--wavelengths", "3", "1, 4, 8"),
+        ("--sums", "half", "single, double, compensated"),
         ("--direct", "on", "next-event"),
         ("--build-quality", "best", "high"),
         ("--strategy", "rullette", "go-with-the-winners"),
@@ -48,7 +51,14 @@ fn numbers_out_of_range() {
         let said = refusal([option, value]);
         assert!(said.contains(message), "{option} {value}: {said}");
     }
-    assert!(refusal(["--spp", "4", "--time", "1s"]).contains("cannot be used with"));
+    for budgets in [
+        ["--spp", "4", "--time", "1s"],
+        ["--spp", "4", "--rays", "9"],
+        ["--time", "1s", "--rays", "9"],
+    ] {
+        assert!(refusal(budgets).contains("cannot be used with"));
+    }
+    assert!(refusal(["--rgb", "--wavelengths", "4"]).contains("cannot be used with"));
 }
 
 #[test]

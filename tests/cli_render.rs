@@ -85,6 +85,7 @@ fn the_built_in_scene() {
         ("strategy.threshold", "0.1"),
         ("strategy.termination", "0.5"),
         ("colour", "spectral, 4 wavelengths a path"),
+        ("film-sums", "double"),
         ("direct-light", "next-event"),
         ("max-depth", "unlimited"),
         ("robust", "false"),
@@ -132,6 +133,9 @@ fn the_same_command_gives_the_same_bits() {
     assert_ne!(once, pixels(["--seed", "1"]));
     assert_ne!(once, pixels(["--spp", "3"]));
     assert_ne!(once, pixels(["--rgb"]));
+    assert_eq!(once, pixels(["--wavelengths", "4"]));
+    assert_ne!(once, pixels(["--wavelengths", "1"]));
+    assert_ne!(once, pixels(["--wavelengths", "8"]));
     assert_ne!(once, pixels(["--direct", "off"]));
     assert_eq!(pixels(["--size", "3x5"]).len(), 15);
 }
@@ -400,10 +404,13 @@ fn help_and_version() {
         "--strategy",
         "--spp",
         "--time",
+        "--rays",
         "--threads",
         "--seed",
         "--size",
         "--rgb",
+        "--wavelengths",
+        "--sums",
         "--models",
         "--direct",
         "--max-depth",

@@ -1,4 +1,4 @@
-//! How `cohort render` behaves while it runs: budgets of time, interruption, threads, memory, closed pipes.
+//! How `cohort render` behaves while it runs: budgets of time and rays, interruption, threads, memory, closed pipes.
 #![cfg(target_os = "linux")]
 
 mod cli_support;
@@ -108,6 +108,19 @@ fn a_budget_of_time_is_kept() {
     assert!((1.5..4.0).contains(&seconds), "{seconds}");
     assert_eq!(attribute(&folder, "cohort:ended"), "out of time");
     assert!(!attribute(&folder, "cohort:samples").starts_with("0 "));
+}
+
+#[test]
+fn a_budget_of_rays_is_kept() {
+    let folder = Folder::new();
+    let output = start(&folder, &["--rays", "100000", "--threads", "1"])
+        .wait_with_output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let rays: u64 = attribute(&folder, "cohort:rays").parse().unwrap();
+    // A batch of 256 pixels, eight samples each, has some ten rays per sample.
+    assert!((100_000..150_000).contains(&rays), "{rays}");
+    assert_eq!(attribute(&folder, "cohort:ended"), "out of rays");
 }
 
 #[test]

@@ -7,7 +7,7 @@ mod support;
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
-use cohort::render::{ColourMode, Settings};
+use cohort::render::{ColourMode, Settings, WavelengthCount};
 use cohort::scene::{LoadOptions, Scene};
 use cohort::transport::DirectLight;
 use cohort::walk::{Rounding, Scope, StrategyKind, StrategyOptions};
@@ -95,7 +95,7 @@ impl Case {
         let [.., estimate] = images.means();
         let expected = match colour {
             ColourMode::Rgb => EMITTED * light,
-            ColourMode::Spectral => EMITTED * light * LUMINANCE_OF_EQUAL_ENERGY,
+            ColourMode::Spectral(_) => EMITTED * light * LUMINANCE_OF_EQUAL_ENERGY,
         };
         let error = estimate.standard_error() / expected;
         let deviation = estimate.mean / expected - 1.0;
@@ -117,7 +117,7 @@ impl Case {
     }
 }
 
-const COLOURS: [ColourMode; 2] = [ColourMode::Rgb, ColourMode::Spectral];
+const COLOURS: [ColourMode; 2] = [ColourMode::Rgb, ColourMode::Spectral(WavelengthCount::Four)];
 
 /// Every strategy in a room of this reflectance. The relative standard errors must be at most `largest_error`.
 fn every_strategy(reflectance: f64, spp: u32, largest_error: f64) {

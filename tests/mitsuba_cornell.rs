@@ -271,7 +271,7 @@ fn knot_in_rgb_by_every_strategy() {
 
 #[test]
 fn knot_in_wavelengths_by_every_strategy() {
-    compare_every_strategy(&Model::knot(), ColourMode::Spectral);
+    compare_every_strategy(&Model::knot(), ColourMode::default());
 }
 
 #[test]
@@ -284,7 +284,7 @@ fn armadillo_in_rgb_by_every_strategy() {
 #[test]
 fn armadillo_in_wavelengths_by_every_strategy() {
     if let Some(model) = Model::armadillo() {
-        compare_every_strategy(&model, ColourMode::Spectral);
+        compare_every_strategy(&model, ColourMode::default());
     }
 }
 
@@ -333,7 +333,7 @@ fn every_population_and_every_way_to_draw() {
 fn paths_of_at_most_eight_segments() {
     let job = Job {
         side: SIDE / 2,
-        colour: ColourMode::Spectral,
+        colour: ColourMode::default(),
         max_depth: Some(8),
     };
     let walks =

@@ -47,7 +47,7 @@ impl Case {
 
     fn in_wavelengths(self) -> Self {
         Self {
-            colour: ColourMode::Spectral,
+            colour: ColourMode::default(),
             ..self
         }
     }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use cohort::film::{Image, read_exr};
-use cohort::render::{ColourMode, Settings};
+use cohort::render::{ColourMode, Settings, WavelengthCount};
 use cohort::scene::{LoadOptions, Scene};
 
 use support::comparison::Comparison;
@@ -21,8 +21,10 @@ use support::render::replicates;
 /// The variable that names the suite.
 const SUITE: &str = "COHORT_SUITE";
 
-const COLOURS: [(ColourMode, &str); 2] =
-    [(ColourMode::Rgb, "rgb"), (ColourMode::Spectral, "spectral")];
+const COLOURS: [(ColourMode, &str); 2] = [
+    (ColourMode::Rgb, "rgb"),
+    (ColourMode::Spectral(WavelengthCount::Four), "spectral"),
+];
 
 /// The suite, or `None` after saying that `what` is skipped.
 fn suite(what: &str) -> Option<PathBuf> {
@@ -84,7 +86,7 @@ fn cornell_boxes() {
     inputs.extend(files_below(&folder, ".obj"));
     for (file, colour) in [
         ("cbox-rgb.xml", ColourMode::Rgb),
-        ("cbox-spectral.xml", ColourMode::Spectral),
+        ("cbox-spectral.xml", ColourMode::default()),
     ] {
         let path = folder.join(file);
         let Some(mitsuba) = Mitsuba::find(file) else {

@@ -1,10 +1,17 @@
 //! The command line: one file per subcommand, no rendering logic.
 
+mod accuracy;
+mod compare;
+mod interrupt;
 mod models;
 mod output;
+mod parse;
 mod render;
 mod report;
+mod scene_args;
 mod strategy_args;
+mod study_args;
+mod study_bar;
 
 use std::process::ExitCode;
 
@@ -21,6 +28,8 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::RenderArgs>),
+    Compare(Box<compare::CompareArgs>),
+    Accuracy(Box<accuracy::AccuracyArgs>),
     Models(models::ModelsArgs),
 }
 
@@ -34,6 +43,8 @@ pub fn run() -> ExitCode {
     };
     let result = match arguments.command {
         Command::Render(arguments) => render::run(*arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
+        Command::Accuracy(arguments) => accuracy::run(&arguments),
         Command::Models(arguments) => models::run(arguments)
             .map(|()| ExitCode::SUCCESS)
             .map_err(Into::into),

@@ -1,7 +1,7 @@
 //! `cohort render`
 
 use std::error::Error;
-use std::num::{NonZeroU32, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -9,34 +9,39 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use cohort::embree::BuildQuality;
-use cohort::film::{ExrOptions, write_exr, write_png};
-use cohort::render::{
-    Budget, ColourMode, Ended, MAX_THREADS, Render, Settings, StopFlag, metadata,
-};
-use cohort::scene::{FilmDescription, LoadOptions, PathIntegrator, Scene};
+use cohort::film::{ExrOptions, FilmSums, write_exr, write_png};
+use cohort::render::{Budget, ColourMode, Ended, Render, Settings, WavelengthCount, metadata};
+use cohort::scene::{PathIntegrator, Scene};
 use cohort::transport::DirectLight;
 
+use super::interrupt::stop_on_interrupt;
 use super::output::OutputFiles;
-use super::report::{Bar, summarise, tell, warn_of_darkness};
+use super::parse::{parse_count, parse_rays, parse_seed, parse_threads, parse_time};
+use super::report::{Bar, summarise, warn_of_darkness};
+use super::scene_args::SceneArgs;
 use super::strategy_args::StrategyArgs;
 
 /// Render a scene into an EXR, with a PNG beside it
 #[derive(Args)]
 pub struct RenderArgs {
-    /// Scene file in Mitsuba 3's XML format; without one, the built-in Cornell box with a knot
-    scene: Option<PathBuf>,
+    #[command(flatten)]
+    scene: SceneArgs,
 
     /// The EXR to write [default: the scene's name in the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
     /// Camera paths per pixel [default: what the scene says]
-    #[arg(long, value_name = "N", conflicts_with = "time", value_parser = parse_count)]
+    #[arg(long, value_name = "N", conflicts_with_all = ["time", "rays"], value_parser = parse_count)]
     spp: Option<NonZeroU32>,
 
     /// Wall-clock time to render, without loading, such as 90s, 30m or 1h30m
-    #[arg(long, value_name = "DURATION", value_parser = parse_time)]
+    #[arg(long, value_name = "DURATION", conflicts_with = "rays", value_parser = parse_time)]
     time: Option<Duration>,
+
+    /// Rays to trace, shadow rays included
+    #[arg(long, value_name = "N", value_parser = parse_rays)]
+    rays: Option<NonZeroU64>,
 
     /// Threads that load and render [default: all cores]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
@@ -46,21 +51,17 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = parse_seed)]
     seed: Option<u64>,
 
-    /// Size of the image in pixels, such as 800x800 [default: what the scene says]
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
-    size: Option<(i64, i64)>,
+    /// Wavelengths that each path carries
+    #[arg(long, value_name = "N", value_enum, default_value_t = Wavelengths::Four, conflicts_with = "rgb")]
+    wavelengths: Wavelengths,
 
     /// Render in three channels instead of wavelengths
     #[arg(long)]
     rgb: bool,
 
-    /// Set one of the scene's $names
-    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = parse_definition)]
-    definitions: Vec<(String, String)>,
-
-    /// Folder with the models that the scene calls $models [default: the scene's own choice]
-    #[arg(long, value_name = "DIR", env = "COHORT_MODELS")]
-    models: Option<PathBuf>,
+    /// Precision in which pixels add up their samples
+    #[arg(long, value_name = "PRECISION", value_enum, default_value_t = Sums::Double)]
+    sums: Sums,
 
     /// How direct light is found
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Direct::NextEvent)]
@@ -84,6 +85,26 @@ pub struct RenderArgs {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
+enum Wavelengths {
+    #[value(name = "1")]
+    One,
+    #[value(name = "4")]
+    Four,
+    #[value(name = "8")]
+    Eight,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Sums {
+    /// 32 bits
+    Single,
+    /// 64 bits
+    Double,
+    /// 32 bits, and 32 more for what those lose
+    Compensated,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
 enum Direct {
     /// Sample the emitters at every vertex, combined by multiple importance sampling
     NextEvent,
@@ -98,59 +119,18 @@ enum Quality {
     High,
 }
 
-fn parse_count(text: &str) -> Result<NonZeroU32, String> {
-    let message = |_| format!("it must be a whole number from 1 to {}", u32::MAX);
-    text.parse().map_err(message)
-}
-
-fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
-    let message = |_| format!("it must be a whole number from 1 to {MAX_THREADS}");
-    text.parse().map_err(message)
-}
-
-fn parse_seed(text: &str) -> Result<u64, String> {
-    let message = |_| format!("it must be a whole number from 0 to {}", u64::MAX);
-    text.parse().map_err(message)
-}
-
-fn parse_size(text: &str) -> Result<(i64, i64), String> {
-    let sides = text
-        .split_once('x')
-        .and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    let (width, height) =
-        sides.ok_or_else(|| "a size is written WxH, such as 800x600".to_owned())?;
-    FilmDescription::new(width, height).map_err(|error| error.to_string())?;
-    Ok((width, height))
-}
-
-fn parse_time(text: &str) -> Result<Duration, String> {
-    match humantime::parse_duration(text) {
-        Ok(Duration::ZERO) => Err("the time must be longer than 0".to_owned()),
-        Ok(time) => Ok(time),
-        Err(error) => Err(format!(
-            "{error}; a time is written with units, such as 90s, 30m or 1h30m"
-        )),
-    }
-}
-
-fn parse_definition(text: &str) -> Result<(String, String), String> {
-    let pair = text
-        .split_once('=')
-        .map(|(name, value)| (name.to_owned(), value.to_owned()));
-    pair.ok_or_else(|| "a definition is written name=value".to_owned())
-}
-
 /// Runs the subcommand.
 pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
     let files = OutputFiles::check(&arguments.output_path())?;
     // A wrong setting is told before a scene is loaded, which can take long.
     let default_depth = PathIntegrator::default().roulette_depth;
     arguments.strategy.build(default_depth)?;
-    let scene = arguments.load()?;
+    let scene = arguments.scene.load(arguments.threads())?;
     warn_of_darkness(&scene);
     let settings = arguments.settings(&scene)?;
     let render = Render::new(Arc::new(scene), settings)?;
-    let stop = stop_on_interrupt()?;
+    let stop =
+        stop_on_interrupt("stopping; what there is will be written (Ctrl-C again to lose it)")?;
     let bar = Bar::new();
     let outcome = render.run(&stop, &bar);
     bar.clear();
@@ -162,24 +142,20 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
         half_precision: film.half_precision,
         samples: outcome.film.unequal_samples(),
         attributes: metadata(&render, &outcome),
+        ..ExrOptions::default()
     };
     write_exr(&files.exr, &image, &options)?;
     write_png(&files.png, &image)?;
     summarise(&render, &outcome, &files);
     Ok(match outcome.ended {
-        Ended::Complete | Ended::OutOfTime => ExitCode::SUCCESS,
+        Ended::Complete | Ended::OutOfTime | Ended::OutOfRays => ExitCode::SUCCESS,
         Ended::Interrupted => ExitCode::from(130),
     })
 }
 
 impl RenderArgs {
     fn output_path(&self) -> PathBuf {
-        let by_default = || {
-            let stem = self.scene.as_ref().and_then(|scene| scene.file_stem());
-            let mut name = stem.unwrap_or("cornell-knot".as_ref()).to_owned();
-            name.push(".exr");
-            name.into()
-        };
+        let by_default = || PathBuf::from(format!("{}.exr", self.scene.stem()));
         self.output.clone().unwrap_or_else(by_default)
     }
 
@@ -187,40 +163,30 @@ impl RenderArgs {
         self.threads.unwrap_or(Settings::default().threads)
     }
 
-    fn load(&self) -> Result<Scene, Box<dyn Error>> {
-        let options = LoadOptions {
-            definitions: self.definitions.clone(),
-            models: self.models.clone(),
-        };
-        // Loading takes as many threads as rendering may, and not the global pool's, which has all cores.
-        let threads = self.threads().get().min(MAX_THREADS);
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()?;
-        let mut scene = pool.install(|| match &self.scene {
-            Some(path) => Scene::load(path, &options),
-            None => Scene::built_in(&options),
-        })?;
-        if let Some((width, height)) = self.size {
-            scene.film = scene.film.resized(width, height)?;
-        }
-        Ok(scene)
-    }
-
     fn settings(&self, scene: &Scene) -> Result<Settings, Box<dyn Error>> {
         let of_scene = NonZeroU32::new(scene.sampler.sample_count).unwrap_or(NonZeroU32::MIN);
         Ok(Settings {
             strategy: self.strategy.build(scene.integrator.roulette_depth)?,
-            budget: match self.time {
-                Some(time) => Budget::Time(time),
-                None => Budget::SamplesPerPixel(self.spp.unwrap_or(of_scene)),
+            budget: match (self.time, self.rays) {
+                (Some(time), _) => Budget::Time(time),
+                (None, Some(rays)) => Budget::Rays(rays),
+                (None, None) => Budget::SamplesPerPixel(self.spp.unwrap_or(of_scene)),
             },
             threads: self.threads(),
             seed: self.seed.unwrap_or(scene.sampler.seed),
             colour: if self.rgb {
                 ColourMode::Rgb
             } else {
-                ColourMode::Spectral
+                ColourMode::Spectral(match self.wavelengths {
+                    Wavelengths::One => WavelengthCount::One,
+                    Wavelengths::Four => WavelengthCount::Four,
+                    Wavelengths::Eight => WavelengthCount::Eight,
+                })
+            },
+            film_sums: match self.sums {
+                Sums::Single => FilmSums::Single,
+                Sums::Double => FilmSums::Double,
+                Sums::Compensated => FilmSums::Compensated,
             },
             direct_light: match self.direct {
                 Direct::NextEvent => DirectLight::NextEvent,
@@ -235,18 +201,4 @@ impl RenderArgs {
             },
         })
     }
-}
-
-/// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
-fn stop_on_interrupt() -> Result<StopFlag, ctrlc::Error> {
-    let stop = StopFlag::new();
-    let raised = stop.clone();
-    ctrlc::set_handler(move || {
-        if raised.is_raised() {
-            std::process::exit(130);
-        }
-        tell("stopping; what there is will be written (Ctrl-C again to lose it)");
-        raised.raise();
-    })?;
-    Ok(stop)
 }

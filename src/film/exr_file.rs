@@ -18,6 +18,9 @@ pub struct ExrOptions {
     /// Camera paths of each pixel, row by row from the top, for a channel `samples` of their own; none where all
     /// pixels have the same number. Ignored where the length is not that of the image.
     pub samples: Option<Vec<u32>>,
+    /// The variance of every pixel's mean, for channels `variance.R`, `variance.G` and `variance.B` of 32-bit numbers.
+    /// Ignored where its size is not that of the image.
+    pub variance: Option<Image>,
     /// Attributes: name and value.
     pub attributes: Vec<(String, String)>,
 }
@@ -28,10 +31,14 @@ impl Default for ExrOptions {
             format: PixelFormat::Rgb,
             half_precision: false,
             samples: None,
+            variance: None,
             attributes: Vec::new(),
         }
     }
 }
+
+/// The channels of a variance image, in the order of its values.
+const VARIANCE_CHANNELS: [&str; 3] = ["variance.R", "variance.G", "variance.B"];
 
 /// Writes an image as EXR: scan lines, ZIP compression, primaries of ITU-R BT.709.
 pub fn write_exr(
@@ -66,6 +73,15 @@ pub fn write_exr(
             "samples",
             FlatSamples::U32(samples.clone()),
         ));
+    }
+    if let Some(variance) = &options.variance
+        && variance.size() == size
+    {
+        for (channel, name) in VARIANCE_CHANNELS.into_iter().enumerate() {
+            // Never in half precision, which ends at 6e-8: squares of small errors.
+            let values = variance.pixels().iter().map(|pixel| pixel[channel]);
+            channels.push(AnyChannel::new(name, FlatSamples::F32(values.collect())));
+        }
     }
     let mut attributes = LayerAttributes {
         software_name: Some(Text::from(concat!("cohort ", env!("CARGO_PKG_VERSION")))),
@@ -131,6 +147,36 @@ pub fn read_exr(path: &Path) -> std::result::Result<Image, FilmFileError> {
     Ok(image)
 }
 
+/// Reads the channels `variance.R`, `variance.G` and `variance.B` of an EXR; `None` where it does not have all three.
+pub fn read_exr_variance(path: &Path) -> std::result::Result<Option<Image>, FilmFileError> {
+    let refuse = |message: String| FilmFileError::Read {
+        path: path.to_owned(),
+        message,
+    };
+    let file = read_first_flat_layer_from_file(path).map_err(|error| refuse(error.to_string()))?;
+    let layer = file.layer_data;
+    let channels = VARIANCE_CHANNELS.map(|name| {
+        let mut list = layer.channel_data.list.iter();
+        list.find(|channel| channel.name == *name)
+    });
+    let [Some(red), Some(green), Some(blue)] = channels else {
+        return Ok(None);
+    };
+    let side = |n: usize| u32::try_from(n).map_err(|_| refuse("it is too large".into()));
+    let mut variance = Image::black(ImageSize {
+        width: side(layer.size.width())?,
+        height: side(layer.size.height())?,
+    });
+    let columns = [red, green, blue].map(|channel| channel.sample_data.values_as_f32());
+    for (channel, values) in columns.into_iter().enumerate() {
+        for (index, value) in values.enumerate() {
+            let (x, y) = (index % layer.size.width(), index / layer.size.width());
+            variance.pixel_mut(x as u32, y as u32)[channel] = value;
+        }
+    }
+    Ok(Some(variance))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -186,7 +232,32 @@ mod tests {
     }
 
     #[test]
+    fn a_variance_stands_beside_the_image() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let size = ImageSize {
+            width: 3,
+            height: 2,
+        };
+        let mut image = Image::black(size);
+        *image.pixel_mut(1, 1) = [0.5, 0.25, 2.0];
+        let mut variance = Image::black(size);
+        *variance.pixel_mut(0, 1) = [1e-9, 2e-9, 3e-9];
+        let mut options = ExrOptions {
+            half_precision: true,
+            ..ExrOptions::default()
+        };
+        write_exr(&path, &image, &options).unwrap();
+        assert_eq!(read_exr_variance(&path).unwrap(), None);
+        options.variance = Some(variance.clone());
+        write_exr(&path, &image, &options).unwrap();
+        assert_eq!(read_exr(&path).unwrap(), image);
+        assert_eq!(read_exr_variance(&path).unwrap(), Some(variance));
+    }
+
+    #[test]
     fn a_missing_file_is_an_error() {
         assert!(read_exr(Path::new("no such file.exr")).is_err());
+        assert!(read_exr_variance(Path::new("no such file.exr")).is_err());
     }
 }

@@ -3,15 +3,19 @@
 mod exr_file;
 mod filter;
 mod image;
+mod pixels;
 mod png_file;
 mod statistics;
+mod sums;
 mod tiles;
 mod whole_file;
 
-pub use exr_file::{ExrOptions, read_exr, write_exr};
+pub use exr_file::{ExrOptions, read_exr, read_exr_variance, write_exr};
 pub use filter::{FilterSample, FilterSampler};
 pub use image::{FilmFileError, Image};
-pub use png_file::write_png;
+pub use pixels::TilePixels;
+pub use png_file::{srgb_bytes, write_png, write_rgb8};
 pub use statistics::PixelStatistics;
+pub use sums::{Accumulator, CompensatedSum, FilmSums};
 pub use tiles::{Film, FilmTile, TILE_SIDE};
 pub use whole_file::WholeFile;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::{FilmFileError, Image, WholeFile};
+use crate::scene::ImageSize;
 
 /// Below this value colours stay as they are; above, they are compressed.
 const SHOULDER: f32 = 0.8;
@@ -12,12 +13,11 @@ const SHOULDER: f32 = 0.8;
 /// Tone mapping leaves everything whose largest channel is up to 0.8 as it is and rolls off what is brighter towards 1,
 /// with its hue kept: a lamp is white or coloured instead of cut off channel by channel.
 pub fn write_png(path: &Path, image: &Image) -> Result<(), FilmFileError> {
-    let size = image.size();
-    let bytes: Vec<u8> = image
-        .pixels()
-        .iter()
-        .flat_map(|&pixel| tone_map(pixel).map(encode))
-        .collect();
+    write_rgb8(path, image.size(), &srgb_bytes(image))
+}
+
+/// Writes three bytes of sRGB by pixel, row by row from the top, as a PNG.
+pub fn write_rgb8(path: &Path, size: ImageSize, bytes: &[u8]) -> Result<(), FilmFileError> {
     WholeFile::create(path)?.finish(|writer| {
         let refuse = |error: png::EncodingError| FilmFileError::Encode {
             path: path.to_owned(),
@@ -28,9 +28,17 @@ pub fn write_png(path: &Path, image: &Image) -> Result<(), FilmFileError> {
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         let mut png = encoder.write_header().map_err(refuse)?;
-        png.write_image_data(&bytes).map_err(refuse)?;
+        png.write_image_data(bytes).map_err(refuse)?;
         png.finish().map_err(refuse)
     })
+}
+
+/// What [`write_png`] writes: three bytes of tone-mapped sRGB by pixel, row by row from the top.
+pub fn srgb_bytes(image: &Image) -> Vec<u8> {
+    let pixels = image.pixels().iter();
+    pixels
+        .flat_map(|&pixel| tone_map(pixel).map(encode))
+        .collect()
 }
 
 /// Linear values in [0, 1]; negative ones (colours beyond sRGB) become 0.

@@ -1,13 +1,15 @@
 //! The film as tiles, each owned by whoever renders it.
 
-use super::{Image, PixelStatistics};
+use serde::{Deserialize, Serialize};
+
+use super::{FilmSums, Image, PixelStatistics, TilePixels};
 use crate::scene::ImageSize;
 
 /// Side of a tile in pixels.
 pub const TILE_SIDE: u32 = 16;
 
 /// A square of the film (less at the right and lower border).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FilmTile {
     /// First column.
     pub x: u32,
@@ -16,10 +18,29 @@ pub struct FilmTile {
     /// Its size.
     pub size: ImageSize,
     /// Its pixels, row by row.
-    pub pixels: Vec<PixelStatistics>,
+    pub pixels: TilePixels,
 }
 
 impl FilmTile {
+    /// The tile without samples whose first column and row are `x` and `y`, on a film of size `film`.
+    fn new([x, y]: [u32; 2], film: ImageSize, sums: FilmSums) -> Self {
+        let size = Self::size_at([x, y], film);
+        Self {
+            x,
+            y,
+            size,
+            pixels: TilePixels::new(sums, size.pixels()),
+        }
+    }
+
+    /// The size of the tile whose first column and row are `x` and `y`, on a film of size `film`.
+    fn size_at([x, y]: [u32; 2], film: ImageSize) -> ImageSize {
+        ImageSize {
+            width: TILE_SIDE.min(film.width - x),
+            height: TILE_SIDE.min(film.height - y),
+        }
+    }
+
     /// Column and row on the film of the pixel with this index in [`Self::pixels`].
     #[inline]
     pub fn position(&self, index: usize) -> (u32, u32) {
@@ -32,32 +53,34 @@ impl FilmTile {
 }
 
 /// The sums of all pixels of the crop window, tile by tile.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Film {
     size: ImageSize,
     tiles: Vec<FilmTile>,
 }
 
 impl Film {
-    /// A film without samples.
-    pub fn new(size: ImageSize) -> Self {
-        let starts = |length: u32| (0..length).step_by(TILE_SIDE as usize);
-        let tile = |x: u32, y: u32| {
-            let size = ImageSize {
-                width: TILE_SIDE.min(size.width - x),
-                height: TILE_SIDE.min(size.height - y),
-            };
-            FilmTile {
-                x,
-                y,
-                size,
-                pixels: vec![PixelStatistics::default(); size.pixels()],
-            }
-        };
-        let tiles = starts(size.height)
-            .flat_map(|y| starts(size.width).map(move |x| tile(x, y)))
+    /// A film without samples, which adds up in `sums`.
+    pub fn new(size: ImageSize, sums: FilmSums) -> Self {
+        let tiles = corners(size)
+            .map(|corner| FilmTile::new(corner, size, sums))
             .collect();
         Self { size, tiles }
+    }
+
+    /// Whether this is like `Film::new(size, sums)` but for its samples. What was loaded from a file may be anything.
+    pub fn is_like_new(&self, size: ImageSize, sums: FilmSums) -> bool {
+        let is_at = |tile: &FilmTile, [x, y]: [u32; 2]| {
+            [tile.x, tile.y] == [x, y]
+                && tile.size == FilmTile::size_at([x, y], size)
+                && tile.pixels.sums() == sums
+                && tile.pixels.count() == tile.size.pixels()
+        };
+        self.size == size
+            && self.tiles.len() == corners(size).count()
+            && corners(size)
+                .zip(&self.tiles)
+                .all(|(corner, tile)| is_at(tile, corner))
     }
 
     /// Size in pixels.
@@ -94,13 +117,13 @@ impl Film {
     }
 
     /// The pixels in no particular order.
-    pub fn pixels(&self) -> impl Iterator<Item = &PixelStatistics> {
-        self.tiles.iter().flat_map(|tile| &tile.pixels)
+    pub fn pixels(&self) -> impl Iterator<Item = PixelStatistics> {
+        self.tiles.iter().flat_map(|tile| tile.pixels.iter())
     }
 
     /// The number of camera paths of every pixel, row by row from the top, or `None` where all have the same.
     pub fn unequal_samples(&self) -> Option<Vec<u32>> {
-        let first = self.tiles.first()?.pixels.first()?.samples;
+        let first = self.pixels().next()?.samples;
         if self.pixels().all(|pixel| pixel.samples == first) {
             return None;
         }
@@ -120,27 +143,42 @@ impl Film {
         for tile in &self.tiles {
             for (index, pixel) in tile.pixels.iter().enumerate() {
                 let (x, y) = tile.position(index);
-                *image.pixel_mut(x, y) = value(pixel);
+                *image.pixel_mut(x, y) = value(&pixel);
             }
         }
         image
     }
 }
 
+/// First column and row of every tile of a film of `size`, row by row.
+fn corners(size: ImageSize) -> impl Iterator<Item = [u32; 2]> {
+    let starts = |length: u32| (0..length).step_by(TILE_SIDE as usize);
+    starts(size.height).flat_map(move |y| starts(size.width).map(move |x| [x, y]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const SIZE: ImageSize = ImageSize {
+        width: 37,
+        height: 18,
+    };
+
+    fn doubles(tile: &mut FilmTile) -> &mut [PixelStatistics] {
+        match &mut tile.pixels {
+            TilePixels::Double(pixels) => pixels,
+            other => panic!("{:?}", other.sums()),
+        }
+    }
+
     #[test]
     fn tiles_cover_every_pixel_once() {
-        let mut film = Film::new(ImageSize {
-            width: 37,
-            height: 18,
-        });
+        let mut film = Film::new(SIZE, FilmSums::Double);
         for tile in film.tiles_mut() {
-            for index in 0..tile.pixels.len() {
+            for index in 0..tile.pixels.count() {
                 let (x, y) = tile.position(index);
-                tile.pixels[index].add_unit(1, [f64::from(x), f64::from(y), 1.0]);
+                doubles(tile)[index].add_unit(1, [f64::from(x), f64::from(y), 1.0]);
             }
         }
         let image = film.image();
@@ -151,7 +189,21 @@ mod tests {
         }
         assert!(film.pixels().all(|pixel| pixel.samples == 1));
         assert_eq!((film.variance(), film.unequal_samples()), (None, None));
-        film.tiles_mut()[0].pixels[1].add_unit(2, [0.0; 3]);
+        doubles(&mut film.tiles_mut()[0])[1].add_unit(2, [0.0; 3]);
         assert_eq!(film.unequal_samples().unwrap()[..3], [1, 3, 1]);
+    }
+
+    #[test]
+    fn a_film_with_other_tiles_is_told() {
+        let film = Film::new(SIZE, FilmSums::Single);
+        assert!(film.is_like_new(SIZE, FilmSums::Single));
+        assert!(!film.is_like_new(SIZE, FilmSums::Double));
+        let (mut less, mut moved, mut cut) = (film.clone(), film.clone(), film);
+        less.tiles.pop();
+        moved.tiles.swap(0, 1);
+        cut.tiles[2].pixels = TilePixels::new(FilmSums::Single, 5);
+        for broken in [less, moved, cut] {
+            assert!(!broken.is_like_new(SIZE, FilmSums::Single));
+        }
     }
 }

@@ -1,27 +1,21 @@
 //! Passes over tiles, until the budget is used up or somebody asks to stop.
 
 use std::num::{NonZeroU32, NonZeroUsize};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::{Budget, ColourMode, Observer, Progress, Schedule, Settings, StopFlag, memory};
-use crate::embree::{EmbreeError, flush_denormals_to_zero};
-use crate::film::{Film, FilmTile};
+use super::watch::{Watch, unpoisoned};
+use super::{Budget, Ended, Observer, Outcome, RenderState, Schedule, Settings, StopFlag, memory};
+use crate::embree::EmbreeError;
 use crate::sampling::StreamKey;
 use crate::scene::{Emitter, Scene};
-use crate::spectrum::{Colour, Rgb, Spectral};
 use crate::transport::{
-    Accelerator, AcceleratorOptions, DirectLight, Engine, TileJob, TraceStatistics, Tracer,
-    TransportSettings,
+    Accelerator, AcceleratorOptions, DirectLight, Engine, TileJob, TraceBatches, TransportSettings,
 };
 use crate::walk::FixedDepth;
-
-/// How often an observer hears of the progress.
-const OBSERVATION_INTERVAL: Duration = Duration::from_millis(100);
 
 /// The most threads that a render takes: more are a mistake.
 pub const MAX_THREADS: usize = 1024;
@@ -65,46 +59,13 @@ pub enum RenderError {
     UnreachableLight,
 }
 
-/// Why a render ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
-    /// Every pixel has its samples.
-    Complete,
-    /// The time is used up.
-    OutOfTime,
-    /// Somebody asked to stop.
-    Interrupted,
-}
-
-impl Ended {
-    /// The name in metadata.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Complete => "complete",
-            Self::OutOfTime => "out of time",
-            Self::Interrupted => "interrupted",
-        }
-    }
-}
-
-/// What a render made.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// The image and what is known of its noise.
-    pub film: Film,
-    /// What was counted.
-    pub statistics: TraceStatistics,
-    /// Wall-clock time of tracing.
-    pub duration: Duration,
-    /// Why it ended.
-    pub ended: Ended,
-}
-
 /// A render that is ready to run: its acceleration structure is built.
 pub struct Render {
     engine: Engine,
     settings: Settings,
     pool: rayon::ThreadPool,
+    /// One for each thread of the pool.
+    tracers: Vec<Mutex<Box<dyn TraceBatches>>>,
     build_time: Duration,
 }
 
@@ -150,10 +111,14 @@ impl Render {
             .thread_name(|index| format!("render {index}"))
             .build()?;
         let engine = Engine::new(scene, accelerator, transport, strategy);
+        let tracers = (0..settings.threads.get())
+            .map(|_| Mutex::new(settings.colour.tracer()))
+            .collect();
         Ok(Self {
             engine,
             settings,
             pool,
+            tracers,
             build_time,
         })
     }
@@ -168,11 +133,6 @@ impl Render {
         &self.settings
     }
 
-    /// Takes another seed for the next run: the same image with other noise, without building anything again.
-    pub fn reseed(&mut self, seed: u64) {
-        self.settings.seed = seed;
-    }
-
     /// How long the acceleration structure took to build.
     pub fn build_time(&self) -> Duration {
         self.build_time
@@ -181,164 +141,94 @@ impl Render {
     /// Renders until the budget is used up or `stop` is raised.
     ///
     /// With a budget of samples the film depends on the scene, the settings and the seed alone, not on the number of
-    /// threads; with a budget of time each pixel does, given its number of samples.
+    /// threads; with other budgets each pixel does, given its number of samples.
     pub fn run(&self, stop: &StopFlag, observer: &dyn Observer) -> Outcome {
-        match self.settings.colour {
-            ColourMode::Spectral => self.run_in::<Spectral<4>>(stop, observer),
-            ColourMode::Rgb => self.run_in::<Rgb>(stop, observer),
-        }
+        let mut state = self.start(self.settings.seed);
+        let ended = self.advance(&mut state, self.settings.budget, stop, observer);
+        state.into_outcome(ended)
     }
 
-    fn run_in<C: Colour>(&self, stop: &StopFlag, observer: &dyn Observer) -> Outcome {
-        let mut film = Film::new(self.engine.scene().film.crop.size);
-        let watch = Watch::new(self.settings.budget, film.size().pixels(), stop, observer);
-        let schedule = Schedule::new(self.settings.budget);
-        let tracers: Vec<Mutex<Tracer<C>>> = (0..self.settings.threads.get())
-            .map(|_| Mutex::default())
-            .collect();
-        let seed = self.settings.seed;
-        self.pool.install(|| {
-            for (pass, samples) in (0..).map_while(|pass| Some((pass, schedule.samples(pass)?))) {
-                // Passes follow each other, so that every pixel adds up its passes in the same order.
-                film.tiles_mut()
-                    .par_iter_mut()
-                    .with_max_len(1)
-                    .enumerate()
-                    .for_each(|(index, tile)| {
-                        let tracer = &tracers[rayon::current_thread_index().unwrap_or(0)];
-                        let key = StreamKey {
-                            seed,
-                            tile: index as u32,
-                            pass,
-                        };
-                        let job = TileJob { key, samples };
-                        watch.trace(&self.engine, &job, tile, &mut unpoisoned(tracer));
-                    });
-                if watch.ended().is_some() {
-                    break;
-                }
-            }
-        });
-        Outcome {
-            statistics: *unpoisoned(&watch.statistics),
-            duration: watch.start.elapsed(),
-            ended: watch.ended().unwrap_or(Ended::Complete),
-            film,
-        }
-    }
-}
-
-/// What all threads watch while a render runs: the clock, the stop flag and the counts.
-struct Watch<'a> {
-    budget: Budget,
-    pixels: usize,
-    stop: &'a StopFlag,
-    observer: &'a dyn Observer,
-    start: Instant,
-    statistics: Mutex<TraceStatistics>,
-    /// Nanoseconds that the latest batch took per camera path.
-    path_cost: AtomicU64,
-    /// When the observer was last told, in nanoseconds since the start.
-    last_observation: AtomicU64,
-    ended: Mutex<Option<Ended>>,
-}
-
-impl<'a> Watch<'a> {
-    fn new(budget: Budget, pixels: usize, stop: &'a StopFlag, observer: &'a dyn Observer) -> Self {
-        Self {
-            budget,
-            pixels,
-            stop,
-            observer,
-            start: Instant::now(),
-            statistics: Mutex::default(),
-            path_cost: AtomicU64::new(0),
-            last_observation: AtomicU64::new(0),
-            ended: Mutex::default(),
-        }
+    /// A render that has not traced anything, with this seed of all random streams instead of that of the settings.
+    pub fn start(&self, seed: u64) -> RenderState {
+        RenderState::new(
+            self.engine.scene().film.crop.size,
+            self.settings.film_sums,
+            seed,
+        )
     }
 
-    fn ended(&self) -> Option<Ended> {
-        *unpoisoned(&self.ended)
+    /// Whether [`advance`](Self::advance) can go on from `state`, which may come from a file: whether its image has the
+    /// size and the sums of this render's. That scene and settings are the same is for the caller to know.
+    pub fn fits(&self, state: &RenderState) -> bool {
+        let size = self.engine.scene().film.crop.size;
+        state.film.is_like_new(size, self.settings.film_sums)
+            && state.pass.done.len() == state.film.tiles().len()
     }
 
-    /// Traces a batch, unless it is time to stop.
-    fn trace<C: Colour>(
+    /// Goes on with a render until it has used up `until`, which is counted from its very start and over all pixels, or
+    /// until `stop` is raised.
+    ///
+    /// The passes are those of the settings' budget; with a number of samples there they have an end, otherwise not.
+    /// `until` only says how far to go: where it is time or rays, the render may pause within a pass, which the next
+    /// advance goes on with; where it is a number of samples, the last pass is made as short as it needs.
+    /// So a pixel depends on its number of samples alone, and not on where renders paused by time or rays.
+    ///
+    /// A batch that would end after the time of `until` is started only if the greater part of it lies before. As time
+    /// is counted from the start, what one advance takes too long is taken from the next.
+    ///
+    /// # Panics
+    /// If `state` does not [fit](Self::fits). One that [`start`](Self::start) made does.
+    pub fn advance(
         &self,
-        engine: &Engine,
-        job: &TileJob,
-        tile: &mut FilmTile,
-        tracer: &mut Tracer<C>,
-    ) {
-        let paths = tile.pixels.len() as u64 * u64::from(job.samples);
-        if self.should_stop(paths) {
-            return;
-        }
-        let _flushed = flush_denormals_to_zero();
-        let start = Instant::now();
-        tracer.trace(engine, job, tile);
-        self.path_cost
-            .store(start.elapsed().as_nanos() as u64 / paths, Ordering::Relaxed);
-        let total = {
-            let mut total = unpoisoned(&self.statistics);
-            *total += tracer.take_statistics();
-            *total
-        };
-        self.observe(&total);
-    }
-
-    /// Whether a batch of so many camera paths should not be started any more. A batch that would end after the
-    /// deadline is started only if the greater part of it lies before.
-    fn should_stop(&self, paths: u64) -> bool {
-        let mut ended = unpoisoned(&self.ended);
-        if ended.is_none() {
-            let expected =
-                Duration::from_nanos(self.path_cost.load(Ordering::Relaxed).saturating_mul(paths));
-            *ended = match self.budget {
-                _ if self.stop.is_raised() => Some(Ended::Interrupted),
-                Budget::Time(limit) if self.start.elapsed() + expected / 2 >= limit => {
-                    Some(Ended::OutOfTime)
+        state: &mut RenderState,
+        until: Budget,
+        stop: &StopFlag,
+        observer: &dyn Observer,
+    ) -> Ended {
+        assert!(self.fits(state), "the state is of another image");
+        let watch = Watch::new(state, until, stop, observer);
+        let schedule = Schedule::new(self.settings.budget);
+        let ended = self.pool.install(|| {
+            loop {
+                if !state.pass.plan(schedule, until) {
+                    break Ended::Complete;
                 }
-                Budget::Time(_) | Budget::SamplesPerPixel(_) => None,
-            };
-        }
-        ended.is_some()
-    }
-
-    fn observe(&self, total: &TraceStatistics) {
-        let elapsed = self.start.elapsed();
-        let (now, last) = (
-            elapsed.as_nanos() as u64,
-            self.last_observation.load(Ordering::Relaxed),
-        );
-        let due = now.saturating_sub(last) >= OBSERVATION_INTERVAL.as_nanos() as u64;
-        // Of several threads that find it due, the one that sets the time tells the observer.
-        if !due
-            || self
-                .last_observation
-                .compare_exchange(last, now, Ordering::Relaxed, Ordering::Relaxed)
-                .is_err()
-        {
-            return;
-        }
-        let samples_per_pixel = total.camera_paths as f64 / self.pixels as f64;
-        let share = match self.budget {
-            Budget::SamplesPerPixel(samples) => samples_per_pixel / f64::from(samples.get()),
-            Budget::Time(limit) => {
-                elapsed.as_secs_f64() / limit.as_secs_f64().max(f64::MIN_POSITIVE)
+                self.trace_pass(state, &watch);
+                state.pass.finish();
+                if let Some(ended) = watch.ended() {
+                    break ended;
+                }
             }
-        };
-        self.observer.progress(&Progress {
-            share: share.clamp(0.0, 1.0),
-            elapsed,
-            camera_paths: total.camera_paths,
-            rays: total.all_rays(),
-            samples_per_pixel,
         });
+        state.statistics = watch.statistics();
+        state.duration = watch.elapsed();
+        ended
     }
-}
 
-/// A panic in one batch ends the render anyway; until then what the lock holds is still the best there is.
-fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Traces what is left of a pass. Passes follow each other, so that every pixel adds up its passes in the same
+    /// order.
+    fn trace_pass(&self, state: &mut RenderState, watch: &Watch) {
+        let pass = &mut state.pass;
+        state
+            .film
+            .tiles_mut()
+            .par_iter_mut()
+            .zip(&mut pass.done)
+            .with_max_len(1)
+            .enumerate()
+            .filter(|(_, (_, done))| !**done)
+            .for_each(|(index, (tile, done))| {
+                let tracer = &self.tracers[rayon::current_thread_index().unwrap_or(0)];
+                let key = StreamKey {
+                    seed: state.seed,
+                    tile: index as u32,
+                    pass: pass.index,
+                };
+                let job = TileJob {
+                    key,
+                    samples: pass.samples,
+                };
+                *done = watch.trace(&self.engine, &job, tile, &mut **unpoisoned(tracer));
+            });
+    }
 }

@@ -7,7 +7,6 @@ use crate::transport::DirectLight;
 pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
     let settings = render.settings();
     let scene = render.engine().scene();
-    let strategy = render.engine().strategy();
     let statistics = &outcome.statistics;
     let film = &outcome.film;
     let (fewest, most) = film.pixels().fold((u64::MAX, 0), |(low, high), pixel| {
@@ -19,39 +18,17 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
     } else {
         format!("{fewest} to {most}")
     };
-    let max_depth = settings
-        .max_depth
-        .map(|depth| depth.get())
-        .or(scene.integrator.max_depth);
     let seconds = outcome.duration.as_secs_f64();
     let mut list = Vec::new();
     let mut add = |name: &str, value: String| list.push((format!("cohort:{name}"), value));
     add("version", env!("CARGO_PKG_VERSION").into());
     add("embree", render.engine().embree_version().to_string());
-    add("cpu", cpu_name());
+    add("cpu", processor_name());
     add("scene", scene.name.clone());
-    add("strategy", strategy.name().into());
-    for (name, value) in strategy.settings() {
-        add(&format!("strategy.{name}"), value);
+    for (name, value) in what_is_computed(render) {
+        add(&name, value);
     }
-    add("colour", settings.colour.name().into());
-    add(
-        "direct-light",
-        match settings.direct_light {
-            DirectLight::NextEvent => "next-event".into(),
-            DirectLight::Off => "off".into(),
-        },
-    );
-    add(
-        "max-depth",
-        max_depth.map_or("unlimited".into(), |depth| depth.to_string()),
-    );
-    add("robust", settings.robust.to_string());
-    add(
-        "build-quality",
-        format!("{:?}", settings.build_quality).to_lowercase(),
-    );
-    add("seed", settings.seed.to_string());
+    add("seed", outcome.seed.to_string());
     add("threads", settings.threads.to_string());
     add("samples", samples);
     add("ended", outcome.ended.name().into());
@@ -76,8 +53,45 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
     list
 }
 
+/// The settings that decide what a render computes and how well, without those that decide how much of it: name and
+/// value.
+pub fn what_is_computed(render: &Render) -> Vec<(String, String)> {
+    let settings = render.settings();
+    let strategy = render.engine().strategy();
+    let max_depth = settings.max_depth.map(|depth| depth.get()).or(render
+        .engine()
+        .scene()
+        .integrator
+        .max_depth);
+    let mut list = Vec::new();
+    let mut add = |name: &str, value: String| list.push((name.to_owned(), value));
+    add("strategy", strategy.name().into());
+    for (name, value) in strategy.settings() {
+        add(&format!("strategy.{name}"), value);
+    }
+    add("colour", settings.colour.name().into());
+    add("film-sums", settings.film_sums.name().into());
+    add(
+        "direct-light",
+        match settings.direct_light {
+            DirectLight::NextEvent => "next-event".into(),
+            DirectLight::Off => "off".into(),
+        },
+    );
+    add(
+        "max-depth",
+        max_depth.map_or("unlimited".into(), |depth| depth.to_string()),
+    );
+    add("robust", settings.robust.to_string());
+    add(
+        "build-quality",
+        format!("{:?}", settings.build_quality).to_lowercase(),
+    );
+    list
+}
+
 /// The processor's name, or the architecture where the system does not tell.
-fn cpu_name() -> String {
+pub fn processor_name() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = info
         .lines()

@@ -1,4 +1,4 @@
-//! The driver: from a scene and settings to a film, within a budget.
+//! The driver: from a scene and settings to a film, within a budget, in one go or in slices.
 
 mod driver;
 mod memory;
@@ -6,9 +6,12 @@ mod metadata;
 mod progress;
 mod schedule;
 mod settings;
+mod state;
+mod watch;
 
-pub use driver::{Ended, MAX_THREADS, Outcome, Render, RenderError};
-pub use metadata::metadata;
+pub use driver::{MAX_THREADS, Render, RenderError};
+pub use metadata::{metadata, processor_name, what_is_computed};
 pub use progress::{Observer, Progress, StopFlag};
 pub use schedule::Schedule;
-pub use settings::{Budget, ColourMode, Settings};
+pub use settings::{Budget, ColourMode, Settings, WavelengthCount};
+pub use state::{Ended, Outcome, RenderState};

@@ -7,9 +7,9 @@ use std::time::Duration;
 /// How far a render is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// The share of the budget that is used, in [0, 1].
+    /// The share of the budget, or of what the advance goes until, that is used, in [0, 1].
     pub share: f64,
-    /// Time since the first ray.
+    /// Time of rendering so far.
     pub elapsed: Duration,
     /// Camera paths so far, over all pixels.
     pub camera_paths: u64,

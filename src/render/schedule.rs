@@ -8,7 +8,8 @@ const FULL_PASS: u32 = 16;
 
 /// The number of samples that every pixel gets in each pass.
 ///
-/// It depends on the budget alone, so that the random numbers of a pass do too.
+/// It depends on the budget of the settings and on numbers of samples, never on time, so that the random numbers of a
+/// pass do too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Schedule {
     budget: Budget,
@@ -20,53 +21,76 @@ impl Schedule {
         Self { budget }
     }
 
-    /// Samples per pixel of pass number `pass` (from 0), or `None` after the last one.
+    /// Samples per pixel of pass number `pass` (from 0), where every pixel has `before` of the passes before and the
+    /// render goes on `until` then; 0 after the last pass.
     ///
-    /// A given number of samples is divided into full passes and a rest. A time budget starts with small passes, 1, 1,
-    /// 2, 4, 8, so that every pixel has its first sample soon.
-    pub fn samples(&self, pass: u32) -> Option<u32> {
-        match self.budget {
-            Budget::SamplesPerPixel(total) => {
-                let rest = total.get().saturating_sub(pass.saturating_mul(FULL_PASS));
-                (rest > 0).then_some(rest.min(FULL_PASS))
-            }
-            Budget::Time(_) => Some(match pass {
+    /// A given number of samples is divided into full passes and a rest. Other budgets have no end of their own, and
+    /// start with small passes, 1, 1, 2, 4, 8, so that every pixel has its first sample soon.
+    pub fn samples(&self, pass: u32, before: u64, until: Budget) -> u32 {
+        let whole = match self.budget {
+            Budget::SamplesPerPixel(_) => FULL_PASS,
+            Budget::Time(_) | Budget::Rays(_) => match pass {
                 0 => 1,
                 _ => (1 << (pass - 1).min(31)).min(FULL_PASS),
-            }),
-        }
+            },
+        };
+        whole
+            .min(missing(self.budget, before))
+            .min(missing(until, before))
+    }
+}
+
+/// How many samples per pixel a budget has left, as far as it counts them.
+fn missing(budget: Budget, before: u64) -> u32 {
+    match budget {
+        // It fits, being at most the total.
+        Budget::SamplesPerPixel(total) => u64::from(total.get()).saturating_sub(before) as u32,
+        Budget::Time(_) | Budget::Rays(_) => u32::MAX,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::num::NonZeroU32;
+    use std::num::{NonZeroU32, NonZeroU64};
     use std::time::Duration;
 
-    fn passes(budget: Budget, most: usize) -> Vec<u32> {
+    const TIME: Budget = Budget::Time(Duration::from_secs(1));
+    const RAYS: Budget = Budget::Rays(NonZeroU64::MIN);
+
+    fn spp(samples: u32) -> Budget {
+        Budget::SamplesPerPixel(NonZeroU32::new(samples).unwrap())
+    }
+
+    fn passes(budget: Budget, until: Budget, most: usize) -> Vec<u32> {
         let schedule = Schedule::new(budget);
-        (0..)
-            .map_while(|pass| schedule.samples(pass))
-            .take(most)
-            .collect()
+        let mut before = 0;
+        let pass = |pass| {
+            let samples = schedule.samples(pass, before, until);
+            before += u64::from(samples);
+            (samples > 0).then_some(samples)
+        };
+        (0..).map_while(pass).take(most).collect()
     }
 
     #[test]
     fn passes_add_up_to_the_samples_asked_for() {
         for total in [1, 15, 16, 17, 100, 4096] {
-            let budget = Budget::SamplesPerPixel(NonZeroU32::new(total).unwrap());
-            assert_eq!(passes(budget, usize::MAX).iter().sum::<u32>(), total);
+            for (budget, until) in [(spp(total), TIME), (RAYS, spp(total))] {
+                let got = passes(budget, until, usize::MAX);
+                assert_eq!(got.iter().sum::<u32>(), total);
+            }
         }
+        assert_eq!(passes(spp(100), spp(40), usize::MAX), [16, 16, 8]);
     }
 
     #[test]
-    fn a_time_budget_starts_small_and_never_ends() {
-        let got = passes(Budget::Time(Duration::from_secs(1)), 8);
-        assert_eq!(got, [1, 1, 2, 4, 8, 16, 16, 16]);
-        assert_eq!(
-            Schedule::new(Budget::Time(Duration::ZERO)).samples(u32::MAX),
-            Some(16)
-        );
+    fn time_and_rays_start_small_and_never_end() {
+        for budget in [TIME, RAYS] {
+            assert_eq!(passes(budget, TIME, 8), [1, 1, 2, 4, 8, 16, 16, 16]);
+            let schedule = Schedule::new(budget);
+            assert_eq!(schedule.samples(u32::MAX, u64::MAX, RAYS), 16);
+        }
+        assert_eq!(passes(TIME, spp(13), usize::MAX), [1, 1, 2, 4, 5]);
     }
 }

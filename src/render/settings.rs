@@ -1,10 +1,12 @@
 //! What a render can be told beside the scene.
 
-use std::num::{NonZeroU32, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::time::Duration;
 
 use crate::embree::BuildQuality;
-use crate::transport::DirectLight;
+use crate::film::FilmSums;
+use crate::spectrum::{Rgb, Spectral};
+use crate::transport::{DirectLight, TraceBatches, Tracer};
 use crate::walk::{Roulette, Strategy};
 
 /// When a render is done.
@@ -14,24 +16,57 @@ pub enum Budget {
     SamplesPerPixel(NonZeroU32),
     /// After so much wall-clock time, counted from when the scene is loaded and its acceleration structure is built.
     Time(Duration),
+    /// Once so many rays, shadow rays included, are traced; what is under way then is finished.
+    Rays(NonZeroU64),
 }
 
 /// How colours are carried along paths.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColourMode {
-    /// Four wavelengths a path.
-    #[default]
-    Spectral,
+    /// Wavelengths that are drawn for each path.
+    Spectral(WavelengthCount),
     /// Three channels.
     Rgb,
+}
+
+/// How many wavelengths a path carries. The image is the same on average: more of them leave less colour noise, for
+/// more time per path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WavelengthCount {
+    /// One, as in the spectral renderers of old.
+    One,
+    /// Four, which fill a vector register.
+    #[default]
+    Four,
+    /// Eight.
+    Eight,
+}
+
+impl Default for ColourMode {
+    /// Four wavelengths.
+    fn default() -> Self {
+        Self::Spectral(WavelengthCount::default())
+    }
 }
 
 impl ColourMode {
     /// The name in metadata.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Spectral => "spectral, 4 wavelengths a path",
+            Self::Spectral(WavelengthCount::One) => "spectral, 1 wavelength a path",
+            Self::Spectral(WavelengthCount::Four) => "spectral, 4 wavelengths a path",
+            Self::Spectral(WavelengthCount::Eight) => "spectral, 8 wavelengths a path",
             Self::Rgb => "rgb",
+        }
+    }
+
+    /// A thread's memory for tracing in this mode.
+    pub(super) fn tracer(self) -> Box<dyn TraceBatches> {
+        match self {
+            Self::Spectral(WavelengthCount::One) => Box::<Tracer<Spectral<1>>>::default(),
+            Self::Spectral(WavelengthCount::Four) => Box::<Tracer<Spectral<4>>>::default(),
+            Self::Spectral(WavelengthCount::Eight) => Box::<Tracer<Spectral<8>>>::default(),
+            Self::Rgb => Box::<Tracer<Rgb>>::default(),
         }
     }
 }
@@ -49,6 +84,8 @@ pub struct Settings {
     pub seed: u64,
     /// How colours are carried.
     pub colour: ColourMode,
+    /// In which numbers pixels add up their samples.
+    pub film_sums: FilmSums,
     /// How direct light is found.
     pub direct_light: DirectLight,
     /// Most segments of a path, camera ray included; `None` takes what the scene says.
@@ -68,6 +105,7 @@ impl Default for Settings {
             threads: std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN),
             seed: 0,
             colour: ColourMode::default(),
+            film_sums: FilmSums::default(),
             direct_light: DirectLight::default(),
             max_depth: None,
             robust: false,

@@ -9,7 +9,7 @@ use super::settings::{DirectLight, TransportSettings};
 use super::statistics::TraceStatistics;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, surface, walk_stage};
 use crate::embree::{Coherence, Version};
-use crate::film::{FilmTile, FilterSampler};
+use crate::film::{Accumulator, FilmTile, FilterSampler, PixelStatistics, TilePixels};
 use crate::sampling::{RandomStream, StreamKey};
 use crate::scene::{ConstantLight, Emitter, Projection, Scene};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -116,10 +116,18 @@ impl<C: Colour> Default for Tracer<C> {
     }
 }
 
-impl<C: Colour> Tracer<C> {
+/// A tracer of whichever colour.
+pub trait TraceBatches: Send {
     /// Traces a batch and adds its samples to the pixels of `tile`. The result depends on nothing but the engine, the
     /// job and the tile.
-    pub fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
+    fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile);
+
+    /// What was counted since the last call.
+    fn take_statistics(&mut self) -> TraceStatistics;
+}
+
+impl<C: Colour> TraceBatches for Tracer<C> {
+    fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
         let start = Instant::now();
         let mut random = RandomStream::new(job.key);
         camera::start(
@@ -136,11 +144,12 @@ impl<C: Colour> Tracer<C> {
         self.statistics.total_time += start.elapsed();
     }
 
-    /// What was counted since the last call.
-    pub fn take_statistics(&mut self) -> TraceStatistics {
+    fn take_statistics(&mut self) -> TraceStatistics {
         std::mem::take(&mut self.statistics)
     }
+}
 
+impl<C: Colour> Tracer<C> {
     /// Moves the batch from vertex to vertex until no particle is left.
     fn follow(&mut self, engine: &Engine, job: &TileJob, random: &mut RandomStream) {
         let max_depth = engine.settings.max_depth.unwrap_or(u32::MAX);
@@ -213,23 +222,36 @@ impl<C: Colour> Tracer<C> {
 
     /// Adds the finished camera paths to their pixels.
     fn expose(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
+        match &mut tile.pixels {
+            TilePixels::Single(pixels) => self.expose_pixels(engine, job, pixels),
+            TilePixels::Double(pixels) => self.expose_pixels(engine, job, pixels),
+            TilePixels::Compensated(pixels) => self.expose_pixels(engine, job, pixels),
+        }
+    }
+
+    fn expose_pixels<A: Accumulator>(
+        &mut self,
+        engine: &Engine,
+        job: &TileJob,
+        pixels: &mut [PixelStatistics<A>],
+    ) {
         let samples = job.samples as usize;
         // Paths of one population are not independent of each other: together they are one unit.
         let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile);
-        for (index, pixel) in tile.pixels.iter_mut().enumerate() {
-            let mut sum = [0.0; 3];
+        for (index, pixel) in pixels.iter_mut().enumerate() {
+            let mut sum = [A::default(); 3];
             for path in index * samples..(index + 1) * samples {
                 let rgb = self.sample(path);
                 if joint {
                     for (sum, value) in sum.iter_mut().zip(rgb) {
-                        *sum += value;
+                        sum.add(value);
                     }
                 } else {
                     pixel.add_unit(1, rgb);
                 }
             }
             if joint {
-                pixel.add_unit(job.samples, sum);
+                pixel.add_unit(job.samples, sum.map(A::total));
             }
         }
     }

@@ -27,6 +27,6 @@ mod surface;
 mod walk_stage;
 
 pub use accelerator::{Accelerator, AcceleratorOptions};
-pub use engine::{Engine, TileJob, Tracer};
+pub use engine::{Engine, TileJob, TraceBatches, Tracer};
 pub use settings::{DirectLight, TransportSettings};
 pub use statistics::TraceStatistics;

@@ -3,10 +3,12 @@
 use std::ops::AddAssign;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use crate::walk::WalkReport;
 
 /// Counts of one or more batches.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TraceStatistics {
     /// Camera paths.
     pub camera_paths: u64,
@@ -29,7 +31,7 @@ pub struct TraceStatistics {
 }
 
 /// Samples that were not numbers the image may hold; they count as black.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DroppedSamples {
     /// Not a number.
     pub nan: u64,

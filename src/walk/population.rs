@@ -2,7 +2,7 @@
 
 use std::ops::AddAssign;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a strategy may know of the particles of a batch: one entry per particle in every slice.
 ///
@@ -77,7 +77,7 @@ impl Particle {
 /// How many particles a strategy had to end because of impossible numbers arriving from upstream.
 ///
 /// Each particle is counted once, under the first cause that applies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WalkReport {
     /// Particles with a number that is not one.
     pub nan: u64,

@@ -158,7 +158,7 @@ impl Mitsuba {
 fn variant(colour: ColourMode) -> &'static str {
     match colour {
         ColourMode::Rgb => "scalar_rgb",
-        ColourMode::Spectral => "scalar_spectral",
+        ColourMode::Spectral(_) => "scalar_spectral",
     }
 }
 

@@ -21,13 +21,14 @@ pub fn replicates(
     let what = format!("{} {:?}", scene.name, settings.strategy);
     let budget = Budget::SamplesPerPixel(NonZeroU32::new(spp).expect("there are samples"));
     let settings = Settings { budget, ..settings };
-    let mut render = Render::new(Arc::clone(scene), settings).expect("the scene can be rendered");
+    let render = Render::new(Arc::clone(scene), settings).expect("the scene can be rendered");
     let mut replicates = Replicates::new(scene.film.crop.size);
     let mut believed = Some([0.0; 3]);
     let count = (seeds.end - seeds.start) as f64;
     for seed in seeds {
-        render.reseed(seed);
-        let outcome = render.run(&StopFlag::new(), &());
+        let mut state = render.start(seed);
+        let ended = render.advance(&mut state, budget, &StopFlag::new(), &());
+        let outcome = state.into_outcome(ended);
         assert_eq!(
             (
                 outcome.statistics.dropped.total(),

@@ -11,13 +11,14 @@
 //! | `sample_border` | boolean | also sample beyond the border, as far as the filter reaches | false |
 //! | nested filter | | `box`; `tent` (`radius` 1); `gaussian` (`stddev` 0.5, cut at four of them); `mitchell` (`B`, `C` 1/3) | gaussian |
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::scene::error::SceneError;
 use crate::scene::xml::{Class, Object};
 
 /// Size of an image in pixels; both sides are positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ImageSize {
     /// Columns.
     pub width: u32,
