@@ -175,7 +175,7 @@ impl Effort {
                 references: 64,
                 factor: 2,
             },
-            ColourMode::Spectral => Self {
+            ColourMode::Spectral(_) => Self {
                 references: 128,
                 factor: 5,
             },
