@@ -82,35 +82,35 @@ impl Interval {
         }
     }
 
-    /// The ratio of the means of two independent samples of a positive measure, `first` / `second`.
+    /// The ratio of the means of a positive measure of two competitors, `first` / `second`, by repetition.
     ///
-    /// The interval is made for the difference of the logarithms, with Welch's standard error. Its bounds are `None` where
-    /// a sample has a single value, or one that is zero or negative, or where the values scatter too widely.
+    /// Values of one repetition belong together: competitors took turns in it, so that what slowed one down slowed the
+    /// other down as well, and it cancels. The interval is that of the mean of paired differences of the logarithms,
+    /// linearised at the means. Its bounds are `None` where there is a single repetition, or a value that is zero or
+    /// negative.
+    ///
+    /// # Panics
+    /// Where they have different numbers of repetitions.
     pub fn of_ratio(first: &[f64], second: &[f64]) -> Self {
+        assert_eq!(first.len(), second.len(), "values come in pairs");
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let (a, b) = (mean(first), mean(second));
         if !(a > 0.0 && b > 0.0 && (a / b).is_finite()) {
             return Self::UNKNOWN;
         }
         let estimate = a / b;
-        let usable = |values: &[f64]| values.len() >= 2 && all_positive(values);
-        if !usable(first) || !usable(second) {
+        if first.len() < 2 || !all_positive(first) || !all_positive(second) {
             return Self {
                 estimate,
                 bounds: None,
             };
         }
-        let centre = Moments::of(first).log().minus(Moments::of(second).log());
-        let (first, second) = (Resampler::new(first), Resampler::new(second));
-        let half = half_width(centre, |random| {
-            let first = first.draw(random).log();
-            first.minus(second.draw(random).log())
-        });
+        let pairs = first.iter().zip(second);
+        let differences: Vec<f64> = pairs.map(|(x, y)| x / a - y / b).collect();
+        let bounds = Self::of_mean(&differences).bounds;
         Self {
             estimate,
-            bounds: half
-                .is_finite()
-                .then(|| ((centre.mean - half).exp(), (centre.mean + half).exp())),
+            bounds: bounds.map(|(low, high)| (estimate * low.exp(), estimate * high.exp())),
         }
     }
 
