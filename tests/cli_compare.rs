@@ -53,6 +53,7 @@ fn a_comparison_ends_in_a_report() {
     );
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
+    assert!(!said.contains("rough"), "{said}");
     let study = folder.path().join("study");
     for file in [
         "index.html",
@@ -312,7 +313,10 @@ fn a_folder_with_another_study_is_left_alone() {
             ],
         )
     };
-    assert!(with("4").status.success());
+    let output = with("4");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("The reference is rough"), "{said}");
     let before = fs::read(folder.path().join("study/results.json")).unwrap();
     assert!(refused(&with("5")).contains("another study"));
     assert_eq!(

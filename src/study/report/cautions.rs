@@ -7,6 +7,9 @@ use crate::study::results::{Results, StudyBudget, StudyKind};
 /// The largest deviation of the budgets that passes without a word.
 const TOLERATED_DEVIATION: f64 = 0.01;
 
+/// The largest relative variance of a reference that passes without a word: 22 % of a pixel's value.
+const TOLERATED_VARIANCE: f64 = 0.05;
+
 /// One sentence for each thing that weakens what was found.
 pub fn cautions(results: &Results) -> Vec<String> {
     let mut cautions = Vec::new();
@@ -23,6 +26,15 @@ pub fn cautions(results: &Results) -> Vec<String> {
              closer to 1 than they are."
                 .to_owned(),
         );
+    }
+    if let Some(variance) = results.reference.relative_variance
+        && variance > TOLERATED_VARIANCE
+    {
+        cautions.push(format!(
+            "The reference is rough: its own relative error is {} % in a typical pixel. Relative errors are divided by its \
+             values, so they mean little. Give it more with --reference-time.",
+            significant(variance.sqrt() * 100.0, 2)
+        ));
     }
     if let (StudyBudget::Seconds(_), Some(deviation)) =
         (conditions.budget, conditions.budget_deviation)
