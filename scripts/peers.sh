@@ -3,7 +3,7 @@
 #
 #   scripts/peers.sh [--seconds S] [-o DIR]
 #
-# Each competitor gets five times S seconds (default 60). DIR (default renders/peers) gets a report for each scene and colour mode. If it is
+# Each competitor gets five times S seconds (default 60), the reference twelve times. DIR (default renders/peers) gets a report for each scene and colour mode. If it is
 # interrupted, the same command goes on. COHORT_MODELS names the folder of the models; Mitsuba is installed if it is not there.
 set -euo pipefail
 
@@ -29,6 +29,6 @@ for model in armadillo lucy; do
         "$cohort" compare "scenes/cornell-$model.xml" --size 400x400 --threads 1 "${mode[@]}" \
             --strategies throughput-roulette,roulette,particle-filter \
             --peer "mitsuba:scalar_$colour,mitsuba:llvm_ad_$colour" \
-            --time "${seconds}s" --reference-time "$((4 * seconds))s" -o "$output/$model-$colour"
+            --time "${seconds}s" --reference-time "$((12 * seconds))s" -o "$output/$model-$colour"
     done
 done

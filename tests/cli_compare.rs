@@ -109,7 +109,7 @@ fn a_comparison_ends_in_a_report() {
         );
         assert!(last.errors.flip.is_some());
         // The variance between repetitions is the same error, measured without any reference.
-        let ratio = last.errors.variance.unwrap() / last.errors.mse.estimate;
+        let ratio = last.errors.variance.unwrap().all.estimate / last.errors.mse.estimate;
         assert!((0.3..3.0).contains(&ratio), "{ratio}");
         for image in [&competitor.images.exr, &competitor.images.error_png] {
             assert!(study.join(image).is_file(), "{image}");

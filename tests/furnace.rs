@@ -8,6 +8,7 @@ use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use cohort::render::{ColourMode, Settings, WavelengthCount};
+use cohort::sampling::SamplerKind;
 use cohort::scene::{LoadOptions, Scene};
 use cohort::transport::DirectLight;
 use cohort::walk::{Rounding, Scope, StrategyKind, StrategyOptions};
@@ -54,6 +55,7 @@ struct Case {
     kind: StrategyKind,
     options: StrategyOptions,
     direct_light: DirectLight,
+    sampler: SamplerKind,
     max_depth: Option<u32>,
     spp: u32,
 }
@@ -64,6 +66,7 @@ impl Case {
             kind,
             options: StrategyOptions::default(),
             direct_light: DirectLight::NextEvent,
+            sampler: SamplerKind::Independent,
             max_depth,
             spp,
         }
@@ -77,6 +80,7 @@ impl Case {
                 .expect("the options are the strategy's"),
             colour,
             direct_light: self.direct_light,
+            sampler: self.sampler,
             max_depth: self.max_depth.and_then(NonZeroU32::new),
             ..Settings::default()
         }
@@ -100,10 +104,11 @@ impl Case {
         let error = estimate.standard_error() / expected;
         let deviation = estimate.mean / expected - 1.0;
         let what = format!(
-            "{} {:?} {:?}, depth {:?}, {}, reflectance {reflectance}: {:+.4} % (+-{:.4} %)",
+            "{} {:?} {:?} {}, depth {:?}, {}, reflectance {reflectance}: {:+.4} % (+-{:.4} %)",
             self.kind,
             self.options,
             self.direct_light,
+            self.sampler,
             self.max_depth,
             colour.name(),
             100.0 * deviation,
@@ -178,6 +183,24 @@ fn without_next_event_estimation() {
                 ..Case::new(kind, None, 32)
             };
             case.check(reflectance, ColourMode::Rgb, 0.02);
+        }
+    }
+}
+
+/// Paths here are far longer than a Sobol sequence has dimensions.
+#[test]
+fn by_sobol_points() {
+    for (reflectance, spp, largest_error) in [(0.9, 16, 0.01), (0.99, 4, 0.04)] {
+        for kind in [
+            StrategyKind::Roulette,
+            StrategyKind::GoWithTheWinners,
+            StrategyKind::ParticleFilter,
+        ] {
+            let case = Case {
+                sampler: SamplerKind::Sobol,
+                ..Case::new(kind, None, spp)
+            };
+            case.check(reflectance, ColourMode::Rgb, largest_error);
         }
     }
 }

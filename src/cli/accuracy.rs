@@ -16,7 +16,7 @@ use super::study_args::StudyArgs;
 #[derive(Args)]
 pub struct AccuracyArgs {
     /// Settings to vary [default: all]: robust, build-quality, wavelengths, sums, max-depth, direct, threshold,
-    /// termination, n-max, population
+    /// termination, n-max, population, sampler
     #[arg(long, value_name = "A,B,…", value_delimiter = ',')]
     settings: Vec<Axis>,
 
@@ -34,6 +34,7 @@ pub fn run(arguments: &AccuracyArgs) -> Result<ExitCode, Box<dyn Error>> {
         let base = EntrySettings {
             strategy: arguments.strategy.strategy,
             options: arguments.strategy.options,
+            sampler: arguments.strategy.sampler.unwrap_or(base.sampler),
             ..base
         };
         let axes = if arguments.settings.is_empty() {

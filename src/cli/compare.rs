@@ -37,6 +37,7 @@ pub fn run(arguments: &CompareArgs) -> Result<ExitCode, Box<dyn Error>> {
             how: How::Ours(EntrySettings {
                 strategy: spec.strategy,
                 options: spec.options,
+                sampler: spec.sampler.unwrap_or(base.sampler),
                 ..base.clone()
             }),
             variation: None,

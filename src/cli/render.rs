@@ -11,6 +11,7 @@ use clap::{Args, ValueEnum};
 use cohort::embree::BuildQuality;
 use cohort::film::{ExrOptions, FilmSums, write_exr, write_png};
 use cohort::render::{Budget, ColourMode, Ended, Render, Settings, WavelengthCount, metadata};
+use cohort::sampling::SamplerKind;
 use cohort::scene::{PathIntegrator, Scene};
 use cohort::transport::DirectLight;
 
@@ -62,6 +63,10 @@ pub struct RenderArgs {
     /// Precision in which pixels add up their samples
     #[arg(long, value_name = "PRECISION", value_enum, default_value_t = Sums::Double)]
     sums: Sums,
+
+    /// Where the random numbers of paths come from: independent or sobol
+    #[arg(long, value_name = "NAME", default_value_t = SamplerKind::default())]
+    sampler: SamplerKind,
 
     /// How direct light is found
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Direct::NextEvent)]
@@ -188,6 +193,7 @@ impl RenderArgs {
                 Sums::Double => FilmSums::Double,
                 Sums::Compensated => FilmSums::Compensated,
             },
+            sampler: self.sampler,
             direct_light: match self.direct {
                 Direct::NextEvent => DirectLight::NextEvent,
                 Direct::Off => DirectLight::Off,

@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use clap::Args;
 use cohort::render::{Budget, ColourMode, Settings};
+use cohort::sampling::SamplerKind;
 use cohort::scene::Scene;
 use cohort::study::results::{Crop, StudyKind};
 use cohort::study::{
@@ -76,6 +77,10 @@ pub struct StudyArgs {
     #[arg(long)]
     rgb: bool,
 
+    /// Where the random numbers of paths come from: independent or sobol
+    #[arg(long, value_name = "NAME", default_value_t = SamplerKind::default())]
+    sampler: SamplerKind,
+
     /// Measures beside MSE and relative MSE
     #[arg(long, value_name = "NAME", value_enum, value_delimiter = ',')]
     metrics: Vec<Metric>,
@@ -132,6 +137,7 @@ impl StudyArgs {
             } else {
                 Settings::default().colour
             },
+            sampler: self.sampler,
             ..EntrySettings::default()
         };
         let plan = Plan {

@@ -103,6 +103,7 @@ impl Render {
         let transport = TransportSettings {
             max_depth,
             direct_light: settings.direct_light,
+            sampler: settings.sampler,
             hide_emitters: scene.integrator.hide_emitters,
         };
         let strategy = std::mem::replace(&mut settings.strategy, Box::new(FixedDepth));
@@ -226,6 +227,7 @@ impl Render {
                 };
                 let job = TileJob {
                     key,
+                    first_sample: pass.before,
                     samples: pass.samples,
                 };
                 *done = watch.trace(&self.engine, &job, tile, &mut **unpoisoned(tracer));

@@ -69,6 +69,7 @@ pub fn what_is_computed(render: &Render) -> Vec<(String, String)> {
     for (name, value) in strategy.settings() {
         add(&format!("strategy.{name}"), value);
     }
+    add("sampler", settings.sampler.to_string());
     add("colour", settings.colour.name().into());
     add("film-sums", settings.film_sums.name().into());
     add(

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use crate::embree::BuildQuality;
 use crate::film::FilmSums;
+use crate::sampling::SamplerKind;
 use crate::spectrum::{Rgb, Spectral};
 use crate::transport::{DirectLight, TraceBatches, Tracer};
 use crate::walk::{Roulette, Strategy};
@@ -86,6 +87,8 @@ pub struct Settings {
     pub colour: ColourMode,
     /// In which numbers pixels add up their samples.
     pub film_sums: FilmSums,
+    /// Where the random numbers of paths come from.
+    pub sampler: SamplerKind,
     /// How direct light is found.
     pub direct_light: DirectLight,
     /// Most segments of a path, camera ray included; `None` takes what the scene says.
@@ -106,6 +109,7 @@ impl Default for Settings {
             seed: 0,
             colour: ColourMode::default(),
             film_sums: FilmSums::default(),
+            sampler: SamplerKind::default(),
             direct_light: DirectLight::default(),
             max_depth: None,
             robust: false,

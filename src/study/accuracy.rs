@@ -9,6 +9,7 @@ use super::plan::{How, Planned, Variation};
 use crate::embree::BuildQuality;
 use crate::film::FilmSums;
 use crate::render::{ColourMode, WavelengthCount};
+use crate::sampling::SamplerKind;
 use crate::transport::DirectLight;
 use crate::walk::{ParticleFilter, Roulette, Scope, StrategyKind, StrategyOptions};
 
@@ -38,6 +39,8 @@ pub enum Axis {
     NMax,
     /// Which paths the particle filter resamples together.
     Population,
+    /// Where the random numbers of paths come from.
+    Sampler,
 }
 
 /// A name that is no axis.
@@ -54,7 +57,7 @@ fn names() -> String {
 
 impl Axis {
     /// Every axis.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Robust,
         Self::BuildQuality,
         Self::Wavelengths,
@@ -65,6 +68,7 @@ impl Axis {
         Self::Termination,
         Self::NMax,
         Self::Population,
+        Self::Sampler,
     ];
 
     /// The name on the command line: that of the option of `cohort render`.
@@ -80,6 +84,7 @@ impl Axis {
             Self::Termination => "termination",
             Self::NMax => "n-max",
             Self::Population => "population",
+            Self::Sampler => "sampler",
         }
     }
 
@@ -206,6 +211,17 @@ impl Axis {
                             options.population = Some(value);
                             // The same number of paths whatever the population.
                             options.n_max = Some(ParticleFilter::default_n_max(Scope::Pixel));
+                        },
+                    )
+                })
+                .into(),
+            Self::Sampler => SamplerKind::ALL
+                .map(|sampler| {
+                    (
+                        sampler.to_string(),
+                        EntrySettings {
+                            sampler,
+                            ..base.clone()
                         },
                     )
                 })

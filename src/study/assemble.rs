@@ -11,7 +11,7 @@ use super::plan::{Plan, ReferencePlan};
 use super::race::Judge;
 use super::results::{
     Competitor, Conditions, Errors, Images, ReferenceFacts, Results, SCHEMA, SceneFacts, Snapshot,
-    StudyBudget,
+    StudyBudget, VarianceIntervals,
 };
 use super::statistics::{CoursePoint, slope, time_to_reach};
 use super::timeline::Turn;
@@ -51,7 +51,14 @@ pub fn assemble(outcome: &Outcome) -> Result<Results, StudyError> {
     let gathered: Result<Vec<Gathered>, StudyError> = plan
         .competitors
         .iter()
-        .map(|planned| gather(outcome.folder, &planned.name, repetitions))
+        .map(|planned| {
+            gather(
+                outcome.folder,
+                &planned.name,
+                repetitions,
+                outcome.judge.lit,
+            )
+        })
         .collect();
     let gathered = gathered?;
     let reference = outcome.judge.reference;
@@ -184,7 +191,7 @@ impl Course {
 }
 
 impl Column {
-    fn repetitions(&self, variance: Option<f64>) -> Repetitions<'_> {
+    fn repetitions(&self, variance: Option<VarianceIntervals>) -> Repetitions<'_> {
         Repetitions {
             errors: &self.errors,
             seconds: &self.seconds,

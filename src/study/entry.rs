@@ -8,6 +8,7 @@ use thiserror::Error;
 use crate::embree::BuildQuality;
 use crate::film::FilmSums;
 use crate::render::{Budget, ColourMode, Settings};
+use crate::sampling::{SamplerKind, UnknownSampler};
 use crate::scene::Scene;
 use crate::transport::DirectLight;
 use crate::walk::{SettingError, StrategyKind, StrategyOptions};
@@ -21,6 +22,8 @@ pub struct EntrySettings {
     pub options: StrategyOptions,
     /// How colours are carried.
     pub colour: ColourMode,
+    /// Where the random numbers of paths come from.
+    pub sampler: SamplerKind,
     /// How direct light is found.
     pub direct_light: DirectLight,
     /// Most segments of a path, camera ray included; `None` takes what the scene says.
@@ -41,6 +44,7 @@ impl Default for EntrySettings {
             strategy: StrategyKind::Roulette,
             options: StrategyOptions::default(),
             colour: settings.colour,
+            sampler: settings.sampler,
             direct_light: settings.direct_light,
             max_depth: settings.max_depth,
             robust: settings.robust,
@@ -68,6 +72,7 @@ impl EntrySettings {
             threads,
             seed: 0,
             colour: self.colour,
+            sampler: self.sampler,
             direct_light: self.direct_light,
             max_depth: self.max_depth,
             robust: self.robust,
@@ -78,7 +83,7 @@ impl EntrySettings {
 }
 
 /// A strategy as it is written in a list: its name, and settings behind colons, such as
-/// `particle-filter:population=tile:n-max=2`.
+/// `particle-filter:population=tile:n-max=2` or `roulette:sampler=sobol`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrategySpec {
     /// As written.
@@ -87,6 +92,8 @@ pub struct StrategySpec {
     pub strategy: StrategyKind,
     /// Its settings.
     pub options: StrategyOptions,
+    /// The sampler that it is to have, if it is not the others'.
+    pub sampler: Option<SamplerKind>,
 }
 
 /// What is wrong with a written strategy.
@@ -95,6 +102,9 @@ pub enum SpecError {
     /// No such strategy or setting, or a value out of its range.
     #[error(transparent)]
     Setting(#[from] SettingError),
+    /// No such sampler.
+    #[error(transparent)]
+    Sampler(#[from] UnknownSampler),
     /// A setting without a value.
     #[error(
         "`{0}`: a setting is written name=value, as in roulette:threshold=0.05:termination=0.3"
@@ -112,7 +122,7 @@ pub enum SpecError {
     },
     /// A setting that no strategy has.
     #[error(
-        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, n-max, population and counts"
+        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, n-max, population, counts and sampler"
     )]
     Unknown(String),
 }
@@ -124,6 +134,7 @@ impl FromStr for StrategySpec {
         let mut parts = text.split(':');
         let strategy = parts.next().unwrap_or_default().parse::<StrategyKind>()?;
         let mut options = StrategyOptions::default();
+        let mut sampler = None;
         for part in parts {
             let (name, value) = part
                 .split_once('=')
@@ -134,6 +145,7 @@ impl FromStr for StrategySpec {
                 "from-depth" => options.from_depth = Some(number("from-depth", value)?),
                 "n-max" => options.n_max = Some(number("n-max", value)?),
                 "population" => options.population = Some(value.parse()?),
+                "sampler" => sampler = Some(value.parse()?),
                 "counts" => options.counts = Some(value.parse()?),
                 _ => return Err(SpecError::Unknown(name.to_owned())),
             }
@@ -143,6 +155,7 @@ impl FromStr for StrategySpec {
             name: text.to_owned(),
             strategy,
             options,
+            sampler,
         })
     }
 }
@@ -167,6 +180,8 @@ mod tests {
         let spec: StrategySpec = "particle-filter:population=tile:n-max=2".parse().unwrap();
         assert_eq!(spec.strategy, StrategyKind::ParticleFilter);
         assert_eq!(spec.options.n_max, Some(2.0));
+        let sobol: StrategySpec = "roulette:sampler=sobol".parse().unwrap();
+        assert_eq!(sobol.sampler, Some(SamplerKind::Sobol));
         let plain: StrategySpec = "roulette".parse().unwrap();
         assert_eq!(plain.options, StrategyOptions::default());
     }
@@ -179,6 +194,7 @@ mod tests {
             ("roulette:threshold=x", "not a number"),
             ("throughput-roulette:from-depth=1.5", "not a whole number"),
             ("roulette:size=3", "no strategy has a setting `size`"),
+            ("roulette:sampler=halton", "independent and sobol"),
             ("roulette:n-max=3", "n-max"),
             ("roulette:termination=1.5", "termination"),
         ] {

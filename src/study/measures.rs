@@ -2,7 +2,7 @@
 
 use super::flip::mean_flip;
 use super::reference::Reference;
-use super::results::{ErrorIntervals, Errors, RegionErrors};
+use super::results::{ErrorIntervals, Errors, RegionErrors, VarianceIntervals};
 use super::statistics::{Interval, products};
 use crate::film::Image;
 
@@ -63,24 +63,50 @@ pub fn relative_error_map(image: &Image, reference: &Reference) -> Vec<f32> {
 /// The variance of one image, estimated between independent repetitions, in the mean over pixels and channels; `None`
 /// with fewer than two of them.
 ///
+/// The estimate is the mean of what each image has to do with it: n / (n - 1) times its mean squared distance from the
+/// mean of the n images. The intervals come from how these differ. `lit` is as for [`errors`].
+///
 /// # Panics
-/// Where the images differ in size.
-pub fn variance_between(images: &[Image]) -> Option<f64> {
-    let [first, _, ..] = images else {
+/// Where the images and `lit` differ in size.
+pub fn variance_between(images: &[Image], lit: &[bool]) -> Option<VarianceIntervals> {
+    let [_, _, ..] = images else {
         return None;
     };
-    let n = images.len() as f64;
-    let mut sum = 0.0;
-    for index in 0..first.pixels().len() {
+    let mut regions = vec![[RegionSquares::default(); 2]; images.len()];
+    for (index, &lit) in lit.iter().enumerate() {
         for channel in 0..3 {
-            let values = images
-                .iter()
-                .map(|image| f64::from(image.pixels()[index][channel]));
-            let mean = values.clone().sum::<f64>() / n;
-            sum += values.map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
+            let value = |image: &Image| f64::from(image.pixels()[index][channel]);
+            let mean = images.iter().map(value).sum::<f64>() / images.len() as f64;
+            for (image, regions) in images.iter().zip(&mut regions) {
+                let region = &mut regions[usize::from(lit)];
+                region.squares += (value(image) - mean).powi(2);
+                region.channels += 1;
+            }
         }
     }
-    Some(sum / (3 * first.pixels().len()) as f64)
+    let unbiased = images.len() as f64 / (images.len() - 1) as f64;
+    let interval = |squares: fn(&[RegionSquares; 2]) -> RegionSquares| {
+        let shares = regions.iter().map(|regions| {
+            let RegionSquares { squares, channels } = squares(regions);
+            unbiased * squares / channels.max(1) as f64
+        });
+        Interval::of_positive(&shares.collect::<Vec<_>>())
+    };
+    Some(VarianceIntervals {
+        all: interval(|[reflected, lit]| RegionSquares {
+            squares: reflected.squares + lit.squares,
+            channels: reflected.channels + lit.channels,
+        }),
+        lit: interval(|[_, lit]| *lit),
+        reflected: interval(|[reflected, _]| *reflected),
+    })
+}
+
+/// Squared distances of one image from the mean of all, summed over the pixels of a region.
+#[derive(Clone, Copy, Default)]
+struct RegionSquares {
+    squares: f64,
+    channels: u64,
 }
 
 /// The measures of a competitor at one point of its budget, by repetition; all slices have one value for each.
@@ -93,7 +119,7 @@ pub struct Repetitions<'a> {
     /// Rays that they took, where they are counted.
     pub rays: Option<&'a [f64]>,
     /// The variance between the images ([`variance_between`]).
-    pub variance: Option<f64>,
+    pub variance: Option<VarianceIntervals>,
 }
 
 impl Repetitions<'_> {

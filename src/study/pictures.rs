@@ -7,7 +7,7 @@ use super::false_colour::write_false_colour;
 use super::kept::{StudyFolder, file_name};
 use super::measures::{relative_error_map, variance_between};
 use super::reference::Reference;
-use super::results::{Crop, Images};
+use super::results::{Crop, Images, VarianceIntervals};
 use crate::film::{ExrOptions, Image, read_exr, write_exr, write_png};
 
 /// The share of pixels whose error is above the top of the false colours: fireflies must not darken the rest.
@@ -23,11 +23,11 @@ pub struct Gathered {
     pub mean: Image,
     /// The first repetition.
     pub first: Image,
-    /// Mean variance between repetitions over pixels and channels; `None` for a single repetition.
-    pub variance: Option<f64>,
+    /// The variance between the repetitions; `None` for a single one.
+    pub variance: Option<VarianceIntervals>,
 }
 
-/// Reads the images of all repetitions of `competitor`.
+/// Reads the images of all repetitions of `competitor`. `lit` says of every pixel whether it sees a light directly.
 ///
 /// # Errors
 /// One is missing or damaged.
@@ -35,12 +35,13 @@ pub fn gather(
     folder: &StudyFolder,
     competitor: &str,
     repetitions: usize,
+    lit: &[bool],
 ) -> Result<Gathered, StudyError> {
     let images: Result<Vec<Image>, _> = (0..repetitions)
         .map(|repetition| read_exr(&folder.repetition(competitor, repetition)))
         .collect();
     let mut images = images?;
-    let variance = variance_between(&images);
+    let variance = variance_between(&images, lit);
     let mean = mean_of(&images);
     Ok(Gathered {
         mean,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::statistics::Interval;
 
 /// The version of the schema. It grows when a field changes its meaning or goes.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// Everything that a study found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -227,8 +227,8 @@ pub struct ErrorIntervals {
     pub lit_relative_mse: Interval,
     /// Relative mean squared error elsewhere.
     pub reflected_relative_mse: Interval,
-    /// Mean variance between repetitions over pixels and channels; `None` for a single repetition.
-    pub variance: Option<f64>,
+    /// The variance between repetitions; `None` for a single repetition.
+    pub variance: Option<VarianceIntervals>,
     /// 1 / (MSE x seconds).
     pub efficiency: Interval,
     /// 1 / (relative MSE x seconds).
@@ -237,6 +237,17 @@ pub struct ErrorIntervals {
     pub ray_efficiency: Option<Interval>,
     /// Mean LDR-FLIP.
     pub flip: Option<Interval>,
+}
+
+/// The variance of one image, estimated between repetitions, as a mean over pixels and channels.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VarianceIntervals {
+    /// Over all pixels.
+    pub all: Interval,
+    /// Over the pixels that see a light directly.
+    pub lit: Interval,
+    /// Over all other pixels.
+    pub reflected: Interval,
 }
 
 /// How long a competitor takes to the target error.

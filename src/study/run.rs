@@ -14,6 +14,7 @@ use super::timeline::turns;
 use super::{Contender, EntrySettings, MitsubaContender, OurRender, Plan, StudyError, lit};
 use crate::film::{ExrOptions, write_exr, write_png};
 use crate::render::{Ended, Observer, Progress, Render, StopFlag};
+use crate::sampling::SamplerKind;
 use crate::scene::Scene;
 use crate::study::results::Results;
 
@@ -162,6 +163,8 @@ fn reference(
     };
     let entry = EntrySettings {
         strategy: plan.reference_strategy()?,
+        // Only of independent samples is the variance known.
+        sampler: SamplerKind::Independent,
         ..settings.clone()
     };
     let render = Render::new(Arc::clone(scene), entry.settings(scene, threads)?)?;

@@ -258,7 +258,7 @@ fn all_measures_are_there_and_agree() {
         errors: &errors,
         seconds: &seconds,
         rays: Some(&rays),
-        variance: variance_between(&images),
+        variance: variance_between(&images, &lit()),
     };
     let found = repetitions.intervals(&reference);
     assert!((found.rmse.estimate.powi(2) / found.mse.estimate - 1.0).abs() < 1e-12);
@@ -268,9 +268,16 @@ fn all_measures_are_there_and_agree() {
     let by_rays = 1.0 / (found.relative_mse.estimate * 1e6);
     assert!((found.ray_efficiency.unwrap().estimate / by_rays - 1.0).abs() < 1e-12);
     // An unbiased estimator's MSE is its variance.
-    assert!((found.variance.unwrap() / BETTER.mse() - 1.0).abs() < 0.2);
+    let variance = found.variance.unwrap();
+    for interval in [variance.all, variance.lit, variance.reflected] {
+        assert!((interval.estimate / BETTER.mse() - 1.0).abs() < 0.4);
+    }
+    assert!(
+        (variance.all.estimate / BETTER.mse() - 1.0).abs() < 0.2
+            && variance.all.holds(BETTER.mse())
+    );
     assert!(found.bias.holds(0.0) && found.flip.unwrap().estimate > 0.01);
-    assert_eq!(variance_between(&images[..1]), None);
+    assert_eq!(variance_between(&images[..1], &lit()), None);
     // The picture of errors has the relative MSE as its mean, and the reference's variance besides.
     let map = relative_error_map(&images[0], &reference);
     let mean = map.iter().map(|v| f64::from(*v)).sum::<f64>() / map.len() as f64;

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::embree::{Hits, Rays};
-use crate::sampling::{Frame, SolidAnglePdf};
+use crate::sampling::{Frame, SequencePoint, SolidAnglePdf};
 use crate::scene::{Bsdf, SurfacePoint};
 use crate::spectrum::Colour;
 
@@ -24,6 +24,8 @@ pub(super) struct Segments<C: Colour> {
     pub path: Vec<u32>,
     /// Throughput, with the bsdf of the vertex that it left and the compensation for all decisions so far.
     pub throughput: Vec<C::Spectrum>,
+    /// Where the particle stands in its sequence of random numbers.
+    pub point: Vec<SequencePoint>,
     /// The density with which its direction was drawn; infinite for camera rays, which no other technique can draw.
     pub direction_pdf: Vec<SolidAnglePdf>,
     /// The rays themselves, in world space.
@@ -45,6 +47,8 @@ pub(super) struct Vertices<C: Colour> {
     pub path: Vec<u32>,
     /// Throughput on arrival.
     pub throughput: Vec<C::Spectrum>,
+    /// Where the particle stands in its sequence of random numbers.
+    pub point: Vec<SequencePoint>,
     /// Position in world space.
     pub position: Vec<Vec3>,
     /// Unit geometric normal in world space.
@@ -97,6 +101,7 @@ impl<C: Colour> Segments<C> {
         Self {
             path: Vec::new(),
             throughput: Vec::new(),
+            point: Vec::new(),
             direction_pdf: Vec::new(),
             rays: Rays::default(),
             hits: Hits::default(),
@@ -111,15 +116,23 @@ impl<C: Colour> Segments<C> {
     pub fn restart(&mut self, count: usize) {
         self.path.clear();
         self.throughput.clear();
+        self.point.clear();
         self.direction_pdf.clear();
         self.rays.resize(count);
     }
 
     /// Adds the state of the next ray; the ray itself is set in `rays` at the same index.
     #[inline]
-    pub fn push(&mut self, path: u32, throughput: C::Spectrum, direction_pdf: SolidAnglePdf) {
+    pub fn push(
+        &mut self,
+        path: u32,
+        throughput: C::Spectrum,
+        point: SequencePoint,
+        direction_pdf: SolidAnglePdf,
+    ) {
         self.path.push(path);
         self.throughput.push(throughput);
+        self.point.push(point);
         self.direction_pdf.push(direction_pdf);
     }
 }
@@ -129,6 +142,7 @@ impl<C: Colour> Vertices<C> {
         Self {
             path: Vec::new(),
             throughput: Vec::new(),
+            point: Vec::new(),
             position: Vec::new(),
             geometric_normal: Vec::new(),
             frame: Vec::new(),
@@ -144,6 +158,7 @@ impl<C: Colour> Vertices<C> {
     pub fn clear(&mut self) {
         self.path.clear();
         self.throughput.clear();
+        self.point.clear();
         self.position.clear();
         self.geometric_normal.clear();
         self.frame.clear();

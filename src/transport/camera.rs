@@ -5,7 +5,7 @@ use glam::Vec2;
 use super::batch::{CameraPaths, Segments};
 use super::engine::{Engine, TileJob};
 use crate::film::FilmTile;
-use crate::sampling::{RandomStream, SolidAnglePdf};
+use crate::sampling::{Sampler, SolidAnglePdf, Use};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Starts `job.samples` paths for every pixel of the tile, pixel by pixel.
@@ -13,7 +13,7 @@ pub(super) fn start<C: Colour>(
     engine: &Engine,
     job: &TileJob,
     tile: &FilmTile,
-    random: &mut RandomStream,
+    sampler: &mut Sampler,
     paths: &mut CameraPaths<C>,
     segments: &mut Segments<C>,
 ) {
@@ -24,19 +24,26 @@ pub(super) fn start<C: Colour>(
     for pixel in 0..tile.pixels.count() {
         let (x, y) = tile.position(pixel);
         let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-        for _ in 0..job.samples {
-            let sample = engine.filter.sample(x, y, random.uniform_2d());
-            let u = if C::RANDOM_NUMBERS > 0 {
-                random.uniform()
+        for index in 0..job.samples {
+            let point = sampler.point(pixel as u32, job.first_sample + u64::from(index));
+            let [film_u, film_v, wavelength_u] = if C::RANDOM_NUMBERS > 0 {
+                sampler.numbers(point, Use::Camera)
             } else {
-                0.0
+                let [u, v] = sampler.numbers(point, Use::Camera);
+                [u, v, 0.0]
             };
+            let sample = engine.filter.sample(x, y, [film_u, film_v]);
             let index = paths.radiance.len();
-            paths.wavelengths.push(C::sample_wavelengths(u));
+            paths.wavelengths.push(C::sample_wavelengths(wavelength_u));
             paths.radiance.push(C::Spectrum::ZERO);
             paths.filter_weight.push(sample.weight);
             let ray = engine.projection.ray(centre + sample.offset);
-            segments.push(index as u32, C::Spectrum::ONE, SolidAnglePdf(f32::INFINITY));
+            segments.push(
+                index as u32,
+                C::Spectrum::ONE,
+                point,
+                SolidAnglePdf(f32::INFINITY),
+            );
             segments.rays.set(
                 index,
                 ray.origin.into(),

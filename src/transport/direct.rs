@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::batch::{CameraPaths, ShadowRays, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
-use crate::sampling::{RandomStream, power_heuristic};
+use crate::sampling::{Sampler, Use, power_heuristic};
 use crate::scene::LightSample;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -14,12 +14,13 @@ const SHADOW_END: f32 = 1.0 - 1e-4;
 
 /// Draws light for every vertex and fills `shadow` with the rays that decide whether it arrives.
 ///
-/// The emitter is chosen uniformly; a path's contribution is MIS-weighted against hitting the same light by chance.
+/// They have been scattered `depth` times before. The emitter is chosen uniformly; a path's contribution is MIS-weighted against hitting the same light by chance.
 pub(super) fn sample_lights<C: Colour>(
     engine: &Engine,
     paths: &CameraPaths<C>,
     vertices: &Vertices<C>,
-    random: &mut RandomStream,
+    depth: u32,
+    sampler: &mut Sampler,
     shadow: &mut ShadowRays<C>,
 ) {
     let emitters = &engine.scene.emitters;
@@ -27,14 +28,13 @@ pub(super) fn sample_lights<C: Colour>(
     shadow.contribution.clear();
     shadow.rays.resize(vertices.len());
     for i in 0..vertices.len() {
-        let choice = random.uniform();
-        let u = random.uniform_2d();
+        let [choice, u, v] = sampler.numbers(vertices.point[i], Use::Light(depth));
         let chosen = ((choice * emitters.len() as f32) as usize).min(emitters.len() - 1);
         let path = vertices.path[i];
         let position = vertices.position[i];
         let wavelengths = &paths.wavelengths[path as usize];
         let Some(light) =
-            emitters[chosen].sample::<C>(&engine.scene.shapes, position, wavelengths, u)
+            emitters[chosen].sample::<C>(&engine.scene.shapes, position, wavelengths, [u, v])
         else {
             continue;
         };

@@ -62,6 +62,7 @@ pub(super) fn arrive<C: Colour>(
         let frame = Frame::about(side.facing(point.shading_normal));
         vertices.path.push(path);
         vertices.throughput.push(segments.throughput[i]);
+        vertices.point.push(segments.point[i]);
         vertices.position.push(point.position);
         vertices.geometric_normal.push(point.geometric_normal);
         vertices.outgoing.push(frame.to_local(-direction));

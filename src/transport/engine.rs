@@ -10,7 +10,7 @@ use super::statistics::TraceStatistics;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, surface, walk_stage};
 use crate::embree::{Coherence, Version};
 use crate::film::{Accumulator, FilmTile, FilterSampler, PixelStatistics, TilePixels};
-use crate::sampling::{RandomStream, StreamKey};
+use crate::sampling::{Sampler, SamplerKind, StreamKey};
 use crate::scene::{ConstantLight, Emitter, Projection, Scene};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::{Offspring, Scope, Strategy};
@@ -37,6 +37,8 @@ pub struct Engine {
 pub struct TileJob {
     /// The random numbers of the batch.
     pub key: StreamKey,
+    /// Samples per pixel of all batches of the tile before this one.
+    pub first_sample: u64,
     /// Camera paths per pixel, positive.
     pub samples: u32,
 }
@@ -129,16 +131,16 @@ pub trait TraceBatches: Send {
 impl<C: Colour> TraceBatches for Tracer<C> {
     fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
         let start = Instant::now();
-        let mut random = RandomStream::new(job.key);
+        let mut sampler = Sampler::new(engine.settings.sampler, job.key);
         camera::start(
             engine,
             job,
             tile,
-            &mut random,
+            &mut sampler,
             &mut self.paths,
             &mut self.segments,
         );
-        self.follow(engine, job, &mut random);
+        self.follow(engine, job, &mut sampler);
         self.expose(engine, job, tile);
         self.statistics.camera_paths += self.paths.radiance.len() as u64;
         self.statistics.total_time += start.elapsed();
@@ -151,7 +153,7 @@ impl<C: Colour> TraceBatches for Tracer<C> {
 
 impl<C: Colour> Tracer<C> {
     /// Moves the batch from vertex to vertex until no particle is left.
-    fn follow(&mut self, engine: &Engine, job: &TileJob, random: &mut RandomStream) {
+    fn follow(&mut self, engine: &Engine, job: &TileJob, sampler: &mut Sampler) {
         let max_depth = engine.settings.max_depth.unwrap_or(u32::MAX);
         let next_event = engine.settings.direct_light == DirectLight::NextEvent
             && !engine.scene.emitters.is_empty();
@@ -196,7 +198,8 @@ impl<C: Colour> Tracer<C> {
                     engine,
                     &self.paths,
                     &self.vertices,
-                    random,
+                    depth,
+                    sampler,
                     &mut self.shadow,
                 );
                 intersect::occluded(&engine.accelerator, &mut self.shadow, &mut self.statistics);
@@ -208,13 +211,14 @@ impl<C: Colour> Tracer<C> {
                 job.samples,
                 depth,
                 &mut self.particles,
-                random,
+                sampler,
                 &mut self.offspring,
             );
             scatter::scatter(
                 &self.vertices,
                 self.offspring.children(),
-                random,
+                depth,
+                sampler,
                 &mut self.segments,
             );
         }
@@ -236,8 +240,9 @@ impl<C: Colour> Tracer<C> {
         pixels: &mut [PixelStatistics<A>],
     ) {
         let samples = job.samples as usize;
-        // Paths of one population are not independent of each other: together they are one unit.
-        let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile);
+        // Paths of one population, or of one sequence, are not independent of each other: together they are one unit.
+        let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile)
+            || engine.settings.sampler != SamplerKind::Independent;
         for (index, pixel) in pixels.iter_mut().enumerate() {
             let mut sum = [A::default(); 3];
             for path in index * samples..(index + 1) * samples {

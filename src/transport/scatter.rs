@@ -2,21 +2,28 @@
 
 use super::batch::{Segments, Vertices};
 use super::offset::leave_surface;
-use crate::sampling::RandomStream;
+use crate::sampling::{Sampler, Use};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::Child;
 
-/// Starts one segment for every child that can carry light; siblings side by side.
+/// Starts one segment for every child that can carry light; siblings side by side. Their parents have been scattered
+/// `depth` times before.
 pub(super) fn scatter<C: Colour>(
     vertices: &Vertices<C>,
     children: &[Child],
-    random: &mut RandomStream,
+    depth: u32,
+    sampler: &mut Sampler,
     segments: &mut Segments<C>,
 ) {
     segments.restart(children.len());
-    for child in children {
+    let mut elder_siblings = 0;
+    for (i, child) in children.iter().enumerate() {
         let parent = child.parent as usize;
-        let sample = vertices.bsdf[parent].sample(vertices.outgoing[parent], random.uniform_2d());
+        let has_elder = i > 0 && children[i - 1].parent == child.parent;
+        elder_siblings = if has_elder { elder_siblings + 1 } else { 0 };
+        let point = vertices.point[parent].branch(elder_siblings, depth);
+        let u = sampler.numbers(point, Use::Direction(depth));
+        let sample = vertices.bsdf[parent].sample(vertices.outgoing[parent], u);
         let throughput = vertices.throughput[parent] * sample.weight * child.weight;
         if throughput.is_black() {
             continue;
@@ -31,7 +38,7 @@ pub(super) fn scatter<C: Colour>(
             0.0,
             f32::INFINITY,
         );
-        segments.push(vertices.path[parent], throughput, sample.pdf);
+        segments.push(vertices.path[parent], throughput, point, sample.pdf);
     }
     let count = segments.len();
     segments.rays.resize(count);

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::sampling::SamplerKind;
+
 /// Whether direct light is also sought by sampling the emitters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -20,6 +22,8 @@ pub struct TransportSettings {
     pub max_depth: Option<u32>,
     /// How direct light is found.
     pub direct_light: DirectLight,
+    /// Where the random numbers of paths come from.
+    pub sampler: SamplerKind,
     /// Whether emitters are invisible to the camera.
     pub hide_emitters: bool,
 }

@@ -1,7 +1,7 @@
 //! Stage: the strategy decides how many children every vertex gets.
 
 use super::batch::{Particles, Vertices};
-use crate::sampling::RandomStream;
+use crate::sampling::{Sampler, SamplerKind};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::{Offspring, Population, Scalar, Scope, Strategy, WalkReport};
 
@@ -14,7 +14,7 @@ pub(super) fn decide<C: Colour>(
     samples: u32,
     depth: u32,
     particles: &mut Particles,
-    random: &mut RandomStream,
+    sampler: &mut Sampler,
     offspring: &mut Offspring,
 ) -> WalkReport {
     // Asked once: a call through the trait for every particle would be felt.
@@ -50,6 +50,10 @@ pub(super) fn decide<C: Colour>(
         shininess: &particles.shininess,
         group: &particles.group,
         depth,
+        points: match sampler.kind() {
+            SamplerKind::Independent => None,
+            SamplerKind::Sobol => Some(&vertices.point),
+        },
     };
-    strategy.resample(&population, random, offspring)
+    strategy.resample(&population, sampler.stream(), offspring)
 }

@@ -10,8 +10,6 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::sampling::RandomStream;
-
 /// Binary digits after the point.
 const FRACTION_BITS: u32 = 32;
 
@@ -69,14 +67,15 @@ impl ExpectedCount {
         self.0
     }
 
-    /// An integer with this mean: floor(nu), plus 1 with probability nu - floor(nu).
+    /// An integer with this mean: floor(nu), plus 1 with probability nu - floor(nu). `bits` draws one of the 2^32 equally
+    /// likely random numbers.
     #[inline]
-    pub(super) fn round(self, random: &mut RandomStream) -> u64 {
+    pub(super) fn round(self, bits: impl FnOnce() -> u32) -> u64 {
         // An integer needs no random number: strategies that leave a particle alone pay nothing.
         if self.fraction() == Self::ZERO {
             self.whole()
         } else {
-            self.round_with(random.bits())
+            self.round_with(bits())
         }
     }
 

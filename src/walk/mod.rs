@@ -31,6 +31,7 @@
 //!     shininess: &[0.0; 4],
 //!     group: &[0; 4],
 //!     depth: 1,
+//!     points: None,
 //! };
 //! let mut random = RandomStream::new(StreamKey { seed: 1, tile: 0, pass: 0 });
 //! let mut offspring = Offspring::new();

@@ -73,8 +73,13 @@ impl Offspring {
     }
 
     /// Draws the children from the expected counts, jointly within each group where `rounding` is joint.
-    pub(super) fn draw(&mut self, rounding: Rounding, group: &[u32], random: &mut RandomStream) {
+    pub(super) fn draw(
+        &mut self,
+        rounding: Rounding,
+        population: &Population,
+        random: &mut RandomStream,
+    ) {
         self.children.clear();
-        rounding.draw(&self.expected, group, random, &mut self.children);
+        rounding.draw(&self.expected, population, random, &mut self.children);
     }
 }

@@ -4,6 +4,8 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
+use crate::sampling::SequencePoint;
+
 /// What a strategy may know of the particles of a batch: one entry per particle in every slice.
 ///
 /// A batch can hold several joint populations, the *groups*: the particles of a group stand side by side, and
@@ -21,6 +23,9 @@ pub struct Population<'a> {
     pub group: &'a [u32],
     /// How often these particles have been scattered so far: 0 at the first vertex seen from the camera.
     pub depth: u32,
+    /// Where the particles stand in sequences of evenly spread points, if they do: those who decide alone do so by
+    /// these. Without them, all decisions are independent.
+    pub points: Option<&'a [SequencePoint]>,
 }
 
 impl Population<'_> {
@@ -36,7 +41,13 @@ impl Population<'_> {
 
     /// Whether every slice has one entry per particle.
     pub(super) fn is_complete(&self) -> bool {
-        [self.albedo.len(), self.shininess.len(), self.group.len()] == [self.len(); 3]
+        let points = self.points.map_or(self.len(), <[SequencePoint]>::len);
+        [
+            self.albedo.len(),
+            self.shininess.len(),
+            self.group.len(),
+            points,
+        ] == [self.len(); 4]
     }
 
     /// Each particle in turn.

@@ -26,8 +26,8 @@ use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
 
-use super::{Child, ExpectedCount, SettingError};
-use crate::sampling::RandomStream;
+use super::{Child, ExpectedCount, Population, SettingError};
+use crate::sampling::{RandomStream, decision};
 
 /// A way of drawing integers with given means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,17 +66,18 @@ impl Rounding {
         Self::Residual(ResidualRest::Stratified),
     ];
 
-    /// Appends the children of particles with the expected counts `nu`, in the order of their parents. Runs of equal
-    /// entries in `group` round jointly.
+    /// Appends the children of `population`, whose expected counts are `nu`, in the order of their parents. The groups of
+    /// the population round jointly.
     pub(super) fn draw(
         self,
         nu: &[ExpectedCount],
-        group: &[u32],
+        population: &Population,
         random: &mut RandomStream,
         children: &mut Vec<Child>,
     ) {
+        let group = population.group;
         match self {
-            Self::Independent => independently(nu, random, children),
+            Self::Independent => independently(nu, population, random, children),
             Self::Multinomial => jointly::<Multinomial>(nu, group, Share::all, random, children),
             Self::Stratified => jointly::<Stratified>(nu, group, Share::all, random, children),
             Self::Systematic => jointly::<Systematic>(nu, group, Share::all, random, children),
@@ -122,9 +123,18 @@ impl Serialize for Rounding {
 }
 
 /// Rounds each count by itself.
-fn independently(nu: &[ExpectedCount], random: &mut RandomStream, children: &mut Vec<Child>) {
+fn independently(
+    nu: &[ExpectedCount],
+    population: &Population,
+    random: &mut RandomStream,
+    children: &mut Vec<Child>,
+) {
     for (parent, &nu) in (0..).zip(nu) {
-        bear(children, parent, nu, nu.round(random));
+        let count = nu.round(|| match population.points {
+            Some(points) => decision(points[parent as usize], population.depth, random),
+            None => random.bits(),
+        });
+        bear(children, parent, nu, count);
     }
 }
 
@@ -228,7 +238,7 @@ struct Stratified;
 
 impl Points for Stratified {
     fn drop_on(total: ExpectedCount, random: &mut RandomStream) -> impl Iterator<Item = u64> {
-        let parts = total.round(random);
+        let parts = total.round(|| random.bits());
         let length = total.units() as f64 / parts as f64;
         (0..parts).map(move |part| {
             let point = (part as f64 + random.uniform_f64()) * length;
@@ -245,7 +255,7 @@ impl Points for Multinomial {
     /// \[0, r) is r U^(1/k), and the others are uniform below it (Bentley and Saxe 1980). Taken from the far end, the
     /// order ascends.
     fn drop_on(total: ExpectedCount, random: &mut RandomStream) -> impl Iterator<Item = u64> {
-        let points = total.round(random);
+        let points = total.round(|| random.bits());
         let end = total.units() as f64;
         let mut remaining = end;
         (1..=points).rev().map(move |left| {

@@ -55,7 +55,7 @@ pub trait Strategy: Send + Sync + Debug {
         );
         self.expected_counts(population, offspring.wishes_mut(population.len()));
         let report = offspring.settle(population);
-        offspring.draw(self.rounding(), population.group, random);
+        offspring.draw(self.rounding(), population, random);
         report
     }
 }

@@ -45,7 +45,11 @@ fn intervals(relative_mse: f64, seconds: f64, rays: f64) -> ErrorIntervals {
         reflected_mse: around(relative_mse * 0.05),
         lit_relative_mse: around(relative_mse * 0.01),
         reflected_relative_mse: around(relative_mse * 1.01),
-        variance: Some(relative_mse * 0.3),
+        variance: Some(VarianceIntervals {
+            all: around(relative_mse * 0.3),
+            lit: around(relative_mse * 40.0),
+            reflected: around(relative_mse * 0.05),
+        }),
         efficiency: around(1.0 / (relative_mse * 0.3 * seconds)),
         relative_efficiency: around(1.0 / (relative_mse * seconds)),
         ray_efficiency: Some(around(1.0 / (relative_mse * rays))),

@@ -145,9 +145,8 @@ fn measures(results: &Results) -> Table {
         ("MSE", |errors| (&errors.mse).into()),
         ("RMSE", |errors| (&errors.rmse).into()),
         ("Bias", |errors| shown_percent(&errors.bias).into()),
-        ("Variance", |errors| match errors.variance {
-            Some(variance) => significant(variance, 3).into(),
-            None => "–".to_owned().into(),
+        ("Variance", |errors| {
+            Cell::or_dash(errors.variance.as_ref().map(|variance| &variance.all))
         }),
     ];
     let has_flip = |competitor: &Competitor| {
@@ -179,6 +178,12 @@ fn regions(results: &Results) -> Table {
             }),
             ("MSE of lights seen directly", |errors| {
                 (&errors.lit_mse).into()
+            }),
+            ("Variance of reflected light", |errors| {
+                Cell::or_dash(errors.variance.as_ref().map(|variance| &variance.reflected))
+            }),
+            ("Variance of lights seen directly", |errors| {
+                Cell::or_dash(errors.variance.as_ref().map(|variance| &variance.lit))
             }),
         ],
     )

@@ -54,6 +54,7 @@ impl Particles {
             shininess: &self.shininess,
             group: &self.group,
             depth,
+            points: None,
         }
     }
 }

@@ -1,0 +1,215 @@
+//! Where the random numbers of paths come from: a setting that every strategy can have.
+
+use std::fmt::{self, Display};
+use std::str::FromStr;
+
+use serde::Serialize;
+use thiserror::Error;
+
+use super::sobol::COORDINATE_BITS;
+use super::{RandomStream, SequencePoint, StreamKey};
+
+/// How the random numbers of paths are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SamplerKind {
+    /// Each independent of all others, from a Mersenne Twister as in the paper.
+    #[default]
+    Independent,
+    /// The samples of a pixel are the points of one Owen-scrambled Sobol sequence: a path's every choice is a dimension, in
+    /// which the samples are spread evenly. Pixels have scrambles of their own.
+    Sobol,
+}
+
+/// A name that is no sampler.
+#[derive(Debug, Error)]
+#[error("there is no sampler `{name}`; there are independent and sobol")]
+pub struct UnknownSampler {
+    name: String,
+}
+
+impl SamplerKind {
+    /// Every sampler.
+    pub const ALL: [Self; 2] = [Self::Independent, Self::Sobol];
+
+    /// The name on the command line and in metadata.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Independent => "independent",
+            Self::Sobol => "sobol",
+        }
+    }
+}
+
+impl Display for SamplerKind {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for SamplerKind {
+    type Err = UnknownSampler;
+
+    fn from_str(text: &str) -> Result<Self, UnknownSampler> {
+        let mut all = Self::ALL.into_iter();
+        all.find(|kind| kind.name() == text)
+            .ok_or_else(|| UnknownSampler {
+                name: text.to_owned(),
+            })
+    }
+}
+
+/// What a path chooses: each use has dimensions of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// Where on the film, and which wavelengths.
+    Camera,
+    /// Which light, and which point of it, from the vertex after this many reflections.
+    Light(u32),
+    /// The direction in which it leaves that vertex.
+    Direction(u32),
+}
+
+impl Use {
+    /// Its four dimensions in a sequence; the fourth of the light's is that of the walk's [`decision`].
+    fn dimensions(self) -> u32 {
+        match self {
+            Self::Camera => 0,
+            Self::Light(depth) => 2 * depth + 1,
+            Self::Direction(depth) => 2 * depth + 2,
+        }
+    }
+}
+
+/// The random numbers of one batch.
+pub struct Sampler {
+    kind: SamplerKind,
+    stream: RandomStream,
+    key: StreamKey,
+}
+
+impl Sampler {
+    /// The numbers of the batch of `key`.
+    pub fn new(kind: SamplerKind, key: StreamKey) -> Self {
+        Self {
+            kind,
+            stream: RandomStream::new(key),
+            key,
+        }
+    }
+
+    /// Which kind it is.
+    pub fn kind(&self) -> SamplerKind {
+        self.kind
+    }
+
+    /// The point of sample number `index` of pixel number `pixel` of the batch's tile, over all passes.
+    pub fn point(&self, pixel: u32, index: u64) -> SequencePoint {
+        match self.kind {
+            // It is never looked at.
+            SamplerKind::Independent => SequencePoint::default(),
+            SamplerKind::Sobol => {
+                let seed = self.key.seed;
+                let key = [seed as u32, (seed >> 32) as u32, self.key.tile, pixel];
+                SequencePoint::new(key, index)
+            }
+        }
+    }
+
+    /// Up to three numbers in \[0, 1) for what the path at `point` does with them.
+    #[inline]
+    pub fn numbers<const N: usize>(&mut self, point: SequencePoint, what: Use) -> [f32; N] {
+        const { assert!(N <= 3, "the fourth dimension of a use is not its own") };
+        match self.kind {
+            SamplerKind::Independent => std::array::from_fn(|_| self.stream.uniform()),
+            SamplerKind::Sobol => {
+                let coordinates = point.coordinates(what.dimensions());
+                std::array::from_fn(|i| coordinates[i])
+            }
+        }
+    }
+
+    /// The stream of independent numbers.
+    pub fn stream(&mut self) -> &mut RandomStream {
+        &mut self.stream
+    }
+}
+
+/// 32 random bits with which the particle at `point` decides about its children after `depth` reflections.
+#[inline]
+pub fn decision(point: SequencePoint, depth: u32, random: &mut RandomStream) -> u32 {
+    let coordinate = point.coordinate(Use::Light(depth).dimensions(), 3);
+    let high = (coordinate * (1 << COORDINATE_BITS) as f32) as u32;
+    // A child that is less probable than the coordinate's last bit must stay possible.
+    let low = random.bits() >> COORDINATE_BITS;
+    high << (u32::BITS - COORDINATE_BITS) | low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KEY: StreamKey = StreamKey {
+        seed: 1,
+        tile: 2,
+        pass: 3,
+    };
+
+    #[test]
+    fn independent_numbers_are_the_streams() {
+        let mut sampler = Sampler::new(SamplerKind::Independent, KEY);
+        let mut stream = RandomStream::new(KEY);
+        let point = sampler.point(4, 5);
+        let drawn: [f32; 3] = sampler.numbers(point, Use::Camera);
+        assert_eq!(drawn, [(); 3].map(|()| stream.uniform()));
+        assert_eq!(sampler.stream().bits(), stream.bits());
+    }
+
+    /// Every use has dimensions that no other has, and the walk's decision one of its own.
+    #[test]
+    fn uses_do_not_share_dimensions() {
+        let mut sampler = Sampler::new(SamplerKind::Sobol, KEY);
+        let point = sampler.point(4, 5);
+        let mut all: Vec<f32> = Vec::new();
+        for what in [
+            Use::Camera,
+            Use::Light(0),
+            Use::Direction(0),
+            Use::Light(1),
+            Use::Direction(1),
+        ] {
+            all.extend(sampler.numbers::<3>(point, what));
+        }
+        for depth in 0..2 {
+            let bits = decision(point, depth, sampler.stream());
+            all.push((bits >> 9) as f32 / (1 << COORDINATE_BITS) as f32);
+        }
+        for (index, one) in all.iter().enumerate() {
+            assert!(!all[..index].contains(one), "{index}");
+        }
+    }
+
+    /// The passes of a pixel go on with one sequence: of 16 samples in two passes, one lies in each sixteenth.
+    #[test]
+    fn passes_share_a_sequence() {
+        let mut parts = [0; 16];
+        for pass in 0..2 {
+            let mut sampler = Sampler::new(SamplerKind::Sobol, StreamKey { pass, ..KEY });
+            for index in 8 * u64::from(pass)..8 * (u64::from(pass) + 1) {
+                let point = sampler.point(0, index);
+                let [u] = sampler.numbers(point, Use::Direction(3));
+                parts[(u * 16.0) as usize] += 1;
+            }
+        }
+        assert_eq!(parts, [1; 16]);
+    }
+
+    #[test]
+    fn samplers_have_names() {
+        for kind in SamplerKind::ALL {
+            assert_eq!(kind.to_string().parse::<SamplerKind>().unwrap(), kind);
+        }
+        let message = "halton".parse::<SamplerKind>().unwrap_err().to_string();
+        assert!(message.contains("halton") && message.contains("sobol"));
+    }
+}

@@ -1,0 +1,110 @@
+//! Sobol points: the same image as by independent numbers, by every strategy, with less noise.
+
+mod support;
+
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::sync::Arc;
+
+use cohort::render::{Budget, Render, Settings, StopFlag};
+use cohort::sampling::SamplerKind;
+use cohort::scene::{LoadOptions, Scene};
+use cohort::walk::{StrategyKind, StrategyOptions};
+
+use support::estimate::sidak_threshold;
+use support::files;
+use support::render::replicates;
+use support::replicates::Replicates;
+
+/// Several lights, shapes of all kinds.
+fn scene(size: u32) -> Arc<Scene> {
+    let options = LoadOptions {
+        definitions: vec![("size".into(), size.to_string())],
+        models: None,
+    };
+    let path = files::of_project("tests/scenes/many-emitters.xml");
+    Arc::new(Scene::load(path, &options).expect("the scene can be loaded"))
+}
+
+fn settings(strategy: StrategyKind, sampler: SamplerKind) -> Settings {
+    Settings {
+        strategy: strategy
+            .build(&StrategyOptions::default())
+            .expect("defaults are valid"),
+        sampler,
+        // For the strategy that never ends a path.
+        max_depth: NonZeroU32::new(12),
+        ..Settings::default()
+    }
+}
+
+/// The mean over pixels and channels of the variance between images.
+fn noise(images: &Replicates) -> f64 {
+    let blocks = images.blocks(1);
+    let pixels = blocks.iter().flatten();
+    let count = pixels.clone().count() as f64;
+    pixels.map(|pixel| pixel.variance).sum::<f64>() / count
+}
+
+#[test]
+fn every_strategy_renders_the_same_image_by_sobol_points() {
+    let scene = scene(24);
+    // Of one pass there is one unit of samples: the film does not say how noisy it is, as it could not know.
+    const SPP: u32 = 16;
+    let reference = replicates(
+        &scene,
+        settings(StrategyKind::Roulette, SamplerKind::Independent),
+        0..64,
+        SPP,
+    );
+    let expected = reference.blocks(8);
+    for (index, strategy) in (1..).zip(StrategyKind::ALL) {
+        let seeds = 1000 * index..1000 * index + 32;
+        let images = replicates(&scene, settings(strategy, SamplerKind::Sobol), seeds, SPP);
+        let blocks = images.blocks(8);
+        let pairs = blocks.iter().flatten().zip(expected.iter().flatten());
+        let limit = sidak_threshold(1e-3, StrategyKind::ALL.len() * pairs.clone().count());
+        for (block, (a, b)) in pairs.enumerate() {
+            let z = a.z_of_difference(b);
+            assert!(
+                z.abs() < limit,
+                "{strategy}, block {block}: {a:?} {b:?}, z = {z}"
+            );
+        }
+    }
+}
+
+#[test]
+fn sobol_points_leave_less_noise() {
+    let scene = scene(24);
+    let of = |sampler| {
+        let settings = settings(StrategyKind::Roulette, sampler);
+        noise(&replicates(&scene, settings, 0..24, 16))
+    };
+    let [independent, sobol] = SamplerKind::ALL.map(of);
+    println!("variance: independent {independent}, sobol {sobol}");
+    assert!(sobol < 0.8 * independent, "{sobol} against {independent}");
+}
+
+/// Threads, slices and the passes of other budgets do not matter.
+#[test]
+fn sobol_renders_are_deterministic() {
+    let scene = scene(40);
+    let spp = |samples| Budget::SamplesPerPixel(NonZeroU32::new(samples).expect("not zero"));
+    let image = |threads: usize, slices: &[u32]| {
+        let settings = Settings {
+            threads: NonZeroUsize::new(threads).expect("not zero"),
+            budget: spp(40),
+            ..settings(StrategyKind::GoWithTheWinners, SamplerKind::Sobol)
+        };
+        let render = Render::new(Arc::clone(&scene), settings).expect("it can be rendered");
+        let mut state = render.start(5);
+        for &slice in slices {
+            render.advance(&mut state, spp(slice), &StopFlag::new(), &());
+        }
+        state.film().image().pixels().to_vec()
+    };
+    let one = image(1, &[40]);
+    assert!(one == image(2, &[40]), "two threads made another image");
+    // Whole passes: a pass that is cut short is another batch, with other shared decisions.
+    assert!(one == image(2, &[16, 32, 40]), "slices made another image");
+}
