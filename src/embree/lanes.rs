@@ -50,6 +50,17 @@ impl<T> Lanes<T> {
     /// A block is 16 numbers without a gap before, between or behind them.
     const DENSE: () = assert!(size_of::<Block<T>>() == WIDTH * size_of::<T>());
 
+    /// Puts a number in its place.
+    ///
+    /// # Safety
+    /// `i` must be below the length.
+    #[inline]
+    pub(super) unsafe fn set_unchecked(&mut self, i: usize, value: T) {
+        const { Self::DENSE }
+        // SAFETY: the blocks are dense numbers in a row, at least as many as the length.
+        unsafe { self.blocks.as_mut_ptr().cast::<T>().add(i).write(value) }
+    }
+
     fn all(&self) -> &[T] {
         const { Self::DENSE }
         // SAFETY: the blocks are that many dense numbers in a row.

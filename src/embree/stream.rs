@@ -54,12 +54,16 @@ impl Rays {
     /// When `i` is not below [`len`](Self::len).
     #[inline]
     pub fn set(&mut self, i: usize, origin: [f32; 3], direction: [f32; 3], tnear: f32, tfar: f32) {
-        for axis in 0..3 {
-            self.origin[axis][i] = origin[axis];
-            self.direction[axis][i] = direction[axis];
+        assert!(i < self.len(), "ray {i} of {}", self.len());
+        // SAFETY: all arrays have the same length, and `i` is below it.
+        unsafe {
+            for axis in 0..3 {
+                self.origin[axis].set_unchecked(i, origin[axis]);
+                self.direction[axis].set_unchecked(i, direction[axis]);
+            }
+            self.tnear.set_unchecked(i, tnear);
+            self.tfar.set_unchecked(i, tfar);
         }
-        self.tnear[i] = tnear;
-        self.tfar[i] = tfar;
     }
 
     /// Makes ray `i` inactive.

@@ -117,7 +117,7 @@ impl Sampler {
     }
 
     /// Up to three numbers in \[0, 1) for what the path at `point` does with them.
-    #[inline]
+    #[inline(always)]
     pub fn numbers<const N: usize>(&mut self, point: SequencePoint, what: Use) -> [f32; N] {
         const { assert!(N <= 3, "the fourth dimension of a use is not its own") };
         match self.kind {

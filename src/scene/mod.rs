@@ -18,7 +18,7 @@ pub use sensors::{
     CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis,
     ImageSize, Perspective, PixelFormat, Projection, ReconstructionFilter,
 };
-pub(crate) use shapes::Corners;
+pub(crate) use shapes::{CornerLanes, SurfaceLanes};
 pub use shapes::{
     Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape, ShapeSample, Sphere,
     SurfacePoint, TriangleAttributes, Triangles,

@@ -40,7 +40,7 @@ impl Colour for Rgb {
     #[inline]
     fn sample_wavelengths(_u: f32) {}
 
-    #[inline]
+    #[inline(always)]
     fn evaluate(curve: &SpectralCurve, _wavelengths: &()) -> Spectrum<3> {
         Spectrum(curve.rgb())
     }
@@ -65,7 +65,7 @@ impl<const N: usize> Colour for Spectral<N> {
         Wavelengths::sample(u)
     }
 
-    #[inline]
+    #[inline(always)]
     fn evaluate(curve: &SpectralCurve, wavelengths: &Wavelengths<N>) -> Spectrum<N> {
         curve.evaluate(wavelengths)
     }

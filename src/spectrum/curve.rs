@@ -149,7 +149,7 @@ impl SpectralCurve {
     }
 
     /// The values at `wavelengths`.
-    #[inline]
+    #[inline(always)]
     pub fn evaluate<const N: usize>(&self, wavelengths: &Wavelengths<N>) -> Spectrum<N> {
         // One branch for all wavelengths, and a loop that the compiler can vectorise in each arm.
         Spectrum(match &self.shape {

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::embree::{Hits, Rays};
 use crate::sampling::{Frame, SequencePoint, SolidAnglePdf};
-use crate::scene::{Bsdf, SurfacePoint};
+use crate::scene::Bsdf;
 use crate::spectrum::Colour;
 
 /// The camera paths of a batch: what all particles that descend from one have in common. Paths of one pixel stand side
@@ -32,13 +32,6 @@ pub(super) struct Segments<C: Colour> {
     pub rays: Rays,
     /// What they hit.
     pub hits: Hits,
-}
-
-/// Where segments ended, one entry for each.
-#[derive(Default)]
-pub(super) struct Arrivals {
-    /// The surface point of those that hit something.
-    pub point: Vec<SurfacePoint>,
 }
 
 /// Surface points that scatter light.

@@ -1,6 +1,7 @@
 //! Stage: camera paths start.
 
 use glam::Vec2;
+use multiversion::multiversion;
 
 use super::batch::{CameraPaths, Segments};
 use super::engine::{Engine, TileJob};
@@ -9,6 +10,10 @@ use crate::sampling::{Sampler, SolidAnglePdf, Use};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Starts `job.samples` paths for every pixel of the tile, pixel by pixel.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
 pub(super) fn start<C: Colour>(
     engine: &Engine,
     job: &TileJob,

@@ -1,6 +1,7 @@
 //! Stage: next-event estimation. Every vertex looks at one point of one emitter.
 
 use glam::Vec3;
+use multiversion::multiversion;
 
 use super::batch::{CameraPaths, ShadowRays, Vertices};
 use super::engine::Engine;
@@ -15,6 +16,10 @@ const SHADOW_END: f32 = 1.0 - 1e-4;
 /// Draws light for every vertex and fills `shadow` with the rays that decide whether it arrives.
 ///
 /// They have been scattered `depth` times before. The emitter is chosen uniformly; a path's contribution is MIS-weighted against hitting the same light by chance.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
 pub(super) fn sample_lights<C: Colour>(
     engine: &Engine,
     paths: &CameraPaths<C>,

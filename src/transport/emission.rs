@@ -1,10 +1,12 @@
 //! Stage: paths arrive. Emitted light is added, and surfaces that scatter become the vertices of the next stages.
 
 use glam::Vec3;
+use multiversion::multiversion;
 
-use super::batch::{Arrivals, CameraPaths, Segments, Vertices};
+use super::batch::{CameraPaths, Segments, Vertices};
 use super::engine::Engine;
 use super::settings::DirectLight;
+use super::surface::{CHUNK, SurfaceChunk};
 use crate::sampling::{Frame, SolidAnglePdf, power_heuristic};
 use crate::scene::{Emitter, Side};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -13,61 +15,69 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 /// those that met a surface which scatters light, in the order of the segments.
 ///
 /// `camera_rays` says whether the segments come from the camera; `scatters` is false at the last depth, where paths end.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
 pub(super) fn arrive<C: Colour>(
     engine: &Engine,
     paths: &mut CameraPaths<C>,
     segments: &Segments<C>,
-    arrivals: &Arrivals,
     vertices: &mut Vertices<C>,
     camera_rays: bool,
     scatters: bool,
 ) {
     vertices.clear();
     let hidden = camera_rays && engine.settings.hide_emitters;
-    for i in 0..segments.len() {
-        let path = segments.path[i];
-        let wavelengths = &paths.wavelengths[path as usize];
-        let direction = Vec3::from(segments.rays.direction(i));
-        let hit = segments.hits.geometry_id(i);
-        let Some(shape) = engine.accelerator.shape(&engine.scene, hit) else {
-            if let Some(light) = engine.surroundings().filter(|_| !hidden) {
-                let weight = engine.mis_weight(segments.direction_pdf[i], light.pdf());
-                let radiance = light.radiance::<C>(wavelengths) * weight;
-                paths.radiance[path as usize] += segments.throughput[i] * radiance;
+    let mut surfaces = SurfaceChunk::default();
+    for start in (0..segments.len()).step_by(CHUNK) {
+        let chunk = start..segments.len().min(start + CHUNK);
+        surfaces.locate(engine, segments, chunk.clone());
+        for i in chunk {
+            let path = segments.path[i];
+            let wavelengths = &paths.wavelengths[path as usize];
+            let direction = Vec3::from(segments.rays.direction(i));
+            let hit = segments.hits.geometry_id(i);
+            let Some(shape) = engine.accelerator.shape(&engine.scene, hit) else {
+                if let Some(light) = engine.surroundings().filter(|_| !hidden) {
+                    let weight = engine.mis_weight(segments.direction_pdf[i], light.pdf());
+                    let radiance = light.radiance::<C>(wavelengths) * weight;
+                    paths.radiance[path as usize] += segments.throughput[i] * radiance;
+                }
+                continue;
+            };
+            let point = surfaces.point(i - start);
+            if let Some(Emitter::Area(light)) =
+                shape.emitter.map(|id| &engine.scene.emitters[id.index()])
+            {
+                let radiance = light.radiance::<C>(&point, -direction, wavelengths);
+                if !radiance.is_black() {
+                    let origin = Vec3::from(segments.rays.origin(i));
+                    let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
+                    let weight = engine.mis_weight(segments.direction_pdf[i], light_pdf);
+                    paths.radiance[path as usize] += segments.throughput[i] * (radiance * weight);
+                }
             }
-            continue;
-        };
-        let point = arrivals.point[i];
-        if let Some(Emitter::Area(light)) =
-            shape.emitter.map(|id| &engine.scene.emitters[id.index()])
-        {
-            let radiance = light.radiance::<C>(&point, -direction, wavelengths);
-            if !radiance.is_black() {
-                let origin = Vec3::from(segments.rays.origin(i));
-                let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
-                let weight = engine.mis_weight(segments.direction_pdf[i], light_pdf);
-                paths.radiance[path as usize] += segments.throughput[i] * (radiance * weight);
+            if !scatters {
+                continue;
             }
+            let Some(side) = Side::seen_with(-direction.dot(point.shading_normal)) else {
+                continue;
+            };
+            let material = &engine.scene.materials[shape.material.index()];
+            let Some(bsdf) = material.bsdf::<C>(side, wavelengths) else {
+                continue;
+            };
+            let frame = Frame::about(side.facing(point.shading_normal));
+            vertices.path.push(path);
+            vertices.throughput.push(segments.throughput[i]);
+            vertices.point.push(segments.point[i]);
+            vertices.position.push(point.position);
+            vertices.geometric_normal.push(point.geometric_normal);
+            vertices.outgoing.push(frame.to_local(-direction));
+            vertices.frame.push(frame);
+            vertices.bsdf.push(bsdf);
         }
-        if !scatters {
-            continue;
-        }
-        let Some(side) = Side::seen_with(-direction.dot(point.shading_normal)) else {
-            continue;
-        };
-        let material = &engine.scene.materials[shape.material.index()];
-        let Some(bsdf) = material.bsdf::<C>(side, wavelengths) else {
-            continue;
-        };
-        let frame = Frame::about(side.facing(point.shading_normal));
-        vertices.path.push(path);
-        vertices.throughput.push(segments.throughput[i]);
-        vertices.point.push(segments.point[i]);
-        vertices.position.push(point.position);
-        vertices.geometric_normal.push(point.geometric_normal);
-        vertices.outgoing.push(frame.to_local(-direction));
-        vertices.frame.push(frame);
-        vertices.bsdf.push(bsdf);
     }
 }
 

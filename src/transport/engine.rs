@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::accelerator::Accelerator;
-use super::batch::{Arrivals, CameraPaths, Particles, Segments, ShadowRays, Vertices};
+use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
 use super::settings::{DirectLight, TransportSettings};
 use super::statistics::TraceStatistics;
-use super::{camera, direct, emission, hidden_emitters, intersect, scatter, surface, walk_stage};
+use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_stage};
 use crate::embree::{Coherence, Version};
 use crate::film::{Accumulator, FilmTile, FilterSampler, PixelStatistics, TilePixels};
 use crate::sampling::{Sampler, SamplerKind, StreamKey};
@@ -95,7 +95,6 @@ impl Engine {
 pub struct Tracer<C: Colour> {
     paths: CameraPaths<C>,
     segments: Segments<C>,
-    arrivals: Arrivals,
     vertices: Vertices<C>,
     shadow: ShadowRays<C>,
     particles: Particles,
@@ -108,7 +107,6 @@ impl<C: Colour> Default for Tracer<C> {
         Self {
             paths: CameraPaths::new(),
             segments: Segments::new(),
-            arrivals: Arrivals::default(),
             vertices: Vertices::new(),
             shadow: ShadowRays::new(),
             particles: Particles::default(),
@@ -181,12 +179,10 @@ impl<C: Colour> Tracer<C> {
                 hidden_emitters::look_through(engine, &mut self.segments, &mut self.statistics);
             }
             let scatters = depth + 1 < max_depth;
-            surface::locate(engine, &self.segments, &mut self.arrivals);
             emission::arrive(
                 engine,
                 &mut self.paths,
                 &self.segments,
-                &self.arrivals,
                 &mut self.vertices,
                 camera_rays,
                 scatters,

@@ -1,5 +1,7 @@
 //! Stage: children leave their parents in directions drawn from the bsdf.
 
+use multiversion::multiversion;
+
 use super::batch::{Segments, Vertices};
 use super::offset::leave_surface;
 use crate::sampling::{Sampler, Use};
@@ -8,6 +10,10 @@ use crate::walk::Child;
 
 /// Starts one segment for every child that can carry light; siblings side by side. Their parents have been scattered
 /// `depth` times before.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
 pub(super) fn scatter<C: Colour>(
     vertices: &Vertices<C>,
     children: &[Child],

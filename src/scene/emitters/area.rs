@@ -53,7 +53,7 @@ impl AreaLight {
         shapes[self.shape.index()].geometry.pdf(reference, point)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn sample<C: Colour>(
         &self,
         shapes: &[Shape],

@@ -68,7 +68,7 @@ pub struct LightSample<S> {
 impl Emitter {
     /// Draws light that may arrive at `reference` (world space) from the uniform numbers `u` in [0, 1); `shapes` are
     /// the scene's. `None` where what was drawn sends no light there.
-    #[inline]
+    #[inline(always)]
     pub fn sample<C: Colour>(
         &self,
         shapes: &[Shape],

@@ -48,7 +48,7 @@ impl MeshSampling {
     }
 
     /// A uniform point of `mesh`, the one that this was made for, from uniform numbers in [0, 1).
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, mesh: &Triangles, u: [f32; 2]) -> SurfacePoint {
         match *self {
             Self::ByTriangle(ref table) => {

@@ -6,6 +6,7 @@
 mod cube;
 mod cylinder;
 mod disk;
+mod lanes;
 mod mesh_file;
 mod mesh_sampling;
 mod rectangle;
@@ -14,8 +15,8 @@ mod triangles;
 
 pub use cylinder::{Cylinder, CylinderHit};
 pub use disk::{Disk, DiskHit};
+pub(crate) use lanes::{CornerLanes, SurfaceLanes};
 pub use sphere::Sphere;
-pub(crate) use triangles::Corners;
 pub use triangles::{TriangleAttributes, Triangles};
 
 use glam::{DMat3, DMat4, Vec3};
@@ -180,7 +181,7 @@ impl ShapeSample {
     pub(crate) fn by_area(reference: Vec3, point: SurfacePoint, area: f32) -> Self {
         let offset = point.position - reference;
         let distance = offset.length();
-        let direction = offset / distance;
+        let direction = offset * (1.0 / distance);
         let cosine = direction.dot(point.geometric_normal).abs();
         let pdf = crate::sampling::AreaPdf(1.0 / area).to_solid_angle(distance, cosine);
         Self {
@@ -218,7 +219,7 @@ impl Geometry {
     }
 
     /// Draws a point of the shape as seen from `reference` (world space).
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, reference: Vec3, u: [f32; 2]) -> ShapeSample {
         match self {
             Self::Triangles(shape) => shape.sample(reference, u),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
+use super::lanes::{CornerLanes, SurfaceLanes};
 use super::mesh_sampling::MeshSampling;
 use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfacePoint};
 use crate::embree::{IndexBuffer, VertexBuffer};
@@ -29,14 +30,6 @@ pub struct TriangleAttributes {
     pub normals: Option<Vec<Vec3>>,
     /// Whether the clockwise side of the triangles is the outer one.
     pub flip_normals: bool,
-}
-
-/// What is stored at the three vertices of a triangle, in world space.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Corners {
-    positions: [Vec3; 3],
-    /// Zero where the mesh has none.
-    normals: [Vec3; 3],
 }
 
 impl Triangles {
@@ -154,60 +147,40 @@ impl Triangles {
     /// The point of a triangle at barycentric coordinates of its second and third vertex.
     #[inline]
     pub(super) fn point(&self, triangle: u32, u: f32, v: f32) -> SurfacePoint {
-        let corners = self.corners(triangle);
-        self.interpolate(&self.corner_data(corners), u, v)
+        let (mut corners, mut points) = (CornerLanes::<1>::default(), SurfaceLanes::<1>::default());
+        self.fetch(self.corners(triangle), &mut corners, 0);
+        corners.interpolate(&[u], &[v], &mut points);
+        points.get(0)
     }
 
-    /// The vertices of a triangle. Together with [`Self::corner_data`] and [`Self::interpolate`] this is
-    /// [`Self::point`] in three steps, so that a batch can take each step for many hits at once and does not wait for
-    /// the memory of one after the other.
+    /// The vertices of a triangle. Together with [`Self::fetch`] and [`CornerLanes::interpolate`] this is [`Self::point`]
+    /// in three steps, so that a batch can take each step for many hits at once and does not wait for the memory of one
+    /// after the other.
     #[inline]
     pub(crate) fn corners(&self, triangle: u32) -> [u32; 3] {
         self.indices[triangle as usize]
     }
 
-    /// What is stored at the vertices of a triangle.
-    #[inline]
-    pub(crate) fn corner_data(&self, corners: [u32; 3]) -> Corners {
-        let [a, b, c] = corners.map(|i| i as usize);
+    /// Puts what is stored at the vertices of a triangle into a lane.
+    #[inline(always)]
+    pub(crate) fn fetch<const N: usize>(
+        &self,
+        corners: [u32; 3],
+        lanes: &mut CornerLanes<N>,
+        lane: usize,
+    ) {
+        let corners = corners.map(|i| i as usize);
         let positions = &**self.positions;
-        Corners {
-            positions: [
-                positions[a].into(),
-                positions[b].into(),
-                positions[c].into(),
-            ],
-            normals: match &self.attributes.normals {
-                Some(normals) => [normals[a], normals[b], normals[c]],
-                None => [Vec3::ZERO; 3],
-            },
-        }
-    }
-
-    /// The point at barycentric coordinates of the second and third vertex.
-    ///
-    /// Interpolating the corners is more precise than going along the ray, whose error grows with the distance
-    /// (Wächter and Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection").
-    #[inline]
-    pub(crate) fn interpolate(&self, corners: &Corners, u: f32, v: f32) -> SurfacePoint {
-        let [a, b, c] = corners.positions;
-        let geometric_normal = (b - a).cross(c - a).normalize_or_zero();
-        let shading_normal = if self.is_smooth() {
-            let [a, b, c] = corners.normals;
-            // Opposite normals can cancel out; then the true surface decides.
-            (a + u * (b - a) + v * (c - a))
-                .try_normalize()
-                .unwrap_or(geometric_normal)
-        } else {
-            geometric_normal
+        let normals = match &self.attributes.normals {
+            Some(normals) => corners.map(|i| normals[i]),
+            None => [Vec3::ZERO; 3],
         };
-        let position = a + u * (b - a) + v * (c - a);
-        SurfacePoint {
-            position,
-            geometric_normal,
-            shading_normal,
-        }
-        .flipped_if(self.attributes.flip_normals)
+        lanes.set(
+            lane,
+            corners.map(|i| Vec3::from(positions[i])),
+            normals,
+            self.attributes.flip_normals,
+        );
     }
 
     pub(super) fn area(&self) -> f32 {
@@ -218,7 +191,7 @@ impl Triangles {
         triangle_areas(&self.positions, &self.indices)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn sample(&self, reference: Vec3, u: [f32; 2]) -> ShapeSample {
         let point = match &self.sampling {
             Some(sampling) => sampling.sample(self, u),
