@@ -4,7 +4,7 @@
 #
 #   scripts/size-study.sh [--quick]
 #
-# Writes size.csv and size.md into cohort-bench/ of the target directory. The whole study needs about 8 GiB of memory; --quick goes up
+# Writes size.csv and size.md into cohort-bench/ of the target directory. The whole study needs about 3 GiB of memory; --quick goes up
 # to 10^6 triangles and 1024^2 pixels.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
