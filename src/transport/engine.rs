@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::accelerator::Accelerator;
 use super::batch::{Arrivals, CameraPaths, Particles, Segments, ShadowRays, Vertices};
+use super::recorded_rays::RecordedRays;
 use super::settings::{DirectLight, TransportSettings};
 use super::statistics::TraceStatistics;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, surface, walk_stage};
@@ -99,6 +100,8 @@ pub struct Tracer<C: Colour> {
     particles: Particles,
     offspring: Offspring,
     statistics: TraceStatistics,
+    /// Where rays are recorded, while they are.
+    pub(super) recorded: Option<RecordedRays>,
 }
 
 impl<C: Colour> Default for Tracer<C> {
@@ -112,6 +115,7 @@ impl<C: Colour> Default for Tracer<C> {
             particles: Particles::default(),
             offspring: Offspring::default(),
             statistics: TraceStatistics::default(),
+            recorded: None,
         }
     }
 }
@@ -169,6 +173,9 @@ impl<C: Colour> Tracer<C> {
             } else {
                 Coherence::Incoherent
             };
+            if let Some(recorded) = &mut self.recorded {
+                recorded.segments.push(self.segments.rays.clone());
+            }
             intersect::nearest(
                 &engine.accelerator,
                 coherence,
@@ -199,6 +206,9 @@ impl<C: Colour> Tracer<C> {
                     random,
                     &mut self.shadow,
                 );
+                if let Some(recorded) = &mut self.recorded {
+                    recorded.shadows.push(self.shadow.rays.clone());
+                }
                 intersect::occluded(&engine.accelerator, &mut self.shadow, &mut self.statistics);
                 direct::add_unoccluded(&self.shadow, &mut self.paths);
             }
