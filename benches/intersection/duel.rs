@@ -7,13 +7,17 @@ use cohort::embree::{Coherence, Scene};
 use crate::calls::{Buffers, Call, Side};
 use crate::ray_sets::{RaySet, STRETCH};
 
-/// The rays of a set in the layout of one call, and how long either side took for them.
+/// An interval of a ratio that needs no further bouts.
+const NARROW: f64 = 0.01;
+
+/// The rays of a set in the layout of one call, and what was measured with them.
 pub struct Duel {
     stretches: Vec<Stretch>,
-    rounds: u64,
+    /// Of every bout, the time of plain C over the time of the safe call.
+    ratios: Vec<f64>,
 }
 
-/// A stretch of rays and the times in seconds of all rounds.
+/// A stretch of rays, and the times in seconds that either side took for it in all rounds.
 struct Stretch {
     buffers: Box<dyn Buffers>,
     safe: Vec<f64>,
@@ -27,7 +31,7 @@ pub struct Speed {
     pub safe: f64,
     /// Million rays a second through plain C.
     pub plain_c: f64,
-    /// The rate of the safe call over that of plain C: the median over all rounds and stretches.
+    /// The rate of the safe call over that of plain C: the median over all bouts.
     pub ratio: f64,
     /// Where the ratio lies with 95 % confidence.
     pub ratio_interval: [f64; 2],
@@ -43,50 +47,59 @@ impl Duel {
         };
         Self {
             stretches: set.stretches.iter().map(stretch).collect(),
-            rounds: 0,
+            ratios: Vec::new(),
         }
     }
 
-    /// Traces the whole set `rounds` times by either side, and returns the time of the safe calls.
+    /// Measures rates: traces the whole set `rounds` times by either side, and returns the time of the safe calls.
     ///
-    /// The sides take turns, each with one stretch, and are half a set apart: neither finds in the cache what the other
-    /// has just looked up there. Who begins changes from round to round.
+    /// The sides take turns, each with one stretch, and are half a set apart: as in a render, rays come after other
+    /// rays, and neither side finds what the other has just looked up.
     pub fn run(&mut self, scene: &Scene, coherence: Coherence, rounds: u64) -> Duration {
-        let count = self.stretches.len();
-        let mut safe_time = Duration::ZERO;
-        for _ in 0..rounds {
-            let mut sides = [Side::Safe, Side::PlainC];
-            if !self.rounds.is_multiple_of(2) {
-                sides.reverse();
+        if self.stretches.iter().all(|s| s.safe.is_empty()) {
+            for stretch in &mut self.stretches {
+                stretch.time(Side::Safe, scene, coherence);
             }
-            for turn in 0..count {
-                for side in sides {
-                    let place = match side {
-                        Side::Safe => turn,
-                        Side::PlainC => (turn + count / 2) % count,
-                    };
-                    let time = self.stretches[place].trace(side, scene, coherence);
-                    if side == Side::Safe {
-                        safe_time += time;
-                    }
-                }
-            }
-            self.rounds += 1;
         }
-        safe_time
+        let count = self.stretches.len();
+        let mut safe_time = 0.0;
+        for _ in 0..rounds {
+            for turn in 0..count {
+                let stretch = &mut self.stretches[turn];
+                let time = stretch.time(Side::Safe, scene, coherence);
+                stretch.safe.push(time);
+                safe_time += time;
+                let stretch = &mut self.stretches[(turn + count / 2) % count];
+                let time = stretch.time(Side::PlainC, scene, coherence);
+                stretch.plain_c.push(time);
+            }
+        }
+        Duration::from_secs_f64(safe_time)
     }
 
-    /// The rates of both sides and their ratio in all rounds so far.
+    /// Measures the ratio: a bout over every stretch, again and again until its interval is narrow enough or `at_most`
+    /// so much time has passed.
+    pub fn compare(&mut self, scene: &Scene, coherence: Coherence, at_most: Duration) {
+        let start = Instant::now();
+        loop {
+            for stretch in &mut self.stretches {
+                self.ratios.push(stretch.bout(scene, coherence));
+            }
+            let [low, high] = self.speed().ratio_interval;
+            if high - low <= NARROW || start.elapsed() >= at_most {
+                return;
+            }
+        }
+    }
+
+    /// What was measured so far.
     pub fn speed(&self) -> Speed {
         let rays = (self.stretches.len() * STRETCH) as f64;
         let rate = |times: fn(&Stretch) -> &[f64]| {
             let medians = self.stretches.iter().map(|s| median(&sorted(times(s))));
             rays / medians.sum::<f64>() * 1e-6
         };
-        let ratio = |(safe, plain_c): (&f64, &f64)| plain_c / safe;
-        let stretches = self.stretches.iter();
-        let ratios = stretches.flat_map(|s| s.safe.iter().zip(&s.plain_c).map(ratio));
-        let ratios = sorted(&ratios.collect::<Vec<f64>>());
+        let ratios = sorted(&self.ratios);
         Speed {
             safe: rate(|stretch| &stretch.safe),
             plain_c: rate(|stretch| &stretch.plain_c),
@@ -97,16 +110,31 @@ impl Duel {
 }
 
 impl Stretch {
-    fn trace(&mut self, side: Side, scene: &Scene, coherence: Coherence) -> Duration {
+    /// Lets the sides take turns with the same rays, which both find in the cache, and returns the shortest time of
+    /// plain C over the shortest of the safe call. In the order of turns nobody is favoured by coming later.
+    fn bout(&mut self, scene: &Scene, coherence: Coherence) -> f64 {
+        use Side::{PlainC as C, Safe as S};
+        for side in [S, C] {
+            self.time(side, scene, coherence);
+        }
+        let [mut safe, mut plain_c] = [f64::INFINITY; 2];
+        for side in [S, C, C, S, C, S, S, C] {
+            let time = self.time(side, scene, coherence);
+            let shortest = match side {
+                S => &mut safe,
+                C => &mut plain_c,
+            };
+            *shortest = shortest.min(time);
+        }
+        plain_c / safe
+    }
+
+    /// Traces all rays; returns seconds.
+    fn time(&mut self, side: Side, scene: &Scene, coherence: Coherence) -> f64 {
         self.buffers.restore();
         let start = Instant::now();
         self.buffers.trace(side, scene, coherence);
-        let time = start.elapsed();
-        match side {
-            Side::Safe => self.safe.push(time.as_secs_f64()),
-            Side::PlainC => self.plain_c.push(time.as_secs_f64()),
-        }
-        time
+        start.elapsed().as_secs_f64()
     }
 }
 

@@ -29,16 +29,16 @@ impl Effort {
         }
     }
 
-    /// A harness that does not take longer than this. With `--quick` it stops as soon as its measuring time is over
-    /// once it has two samples, of one and two rounds.
+    /// A harness that does not take longer than this. With `--quick` criterion stops after the first round, which is
+    /// longer than its measuring time.
     pub fn criterion(self) -> Criterion {
         let measuring = match self {
-            Self::Test | Self::Quick => Duration::from_millis(4),
-            Self::Full => Duration::from_millis(60),
+            Self::Test | Self::Quick => Duration::from_nanos(1),
+            Self::Full => Duration::from_millis(40),
         };
         Criterion::default()
             .without_plots()
-            .warm_up_time(Duration::from_millis(2))
+            .warm_up_time(Duration::from_millis(1))
             .measurement_time(measuring)
             .sample_size(10)
             .nresamples(1001)
@@ -50,6 +50,15 @@ impl Effort {
             Self::Test => 1,
             Self::Quick => 4,
             Self::Full => 16,
+        }
+    }
+
+    /// How long a ratio may be measured until it is sure.
+    pub fn comparing(self) -> Duration {
+        match self {
+            Self::Test => Duration::ZERO,
+            Self::Quick => Duration::from_millis(10),
+            Self::Full => Duration::from_millis(500),
         }
     }
 

@@ -48,7 +48,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     criterion.final_summary();
-    tables::publish(&outcome)?;
+    if effort != Effort::Test {
+        tables::publish(&outcome)?;
+    }
     Ok(())
 }
 
@@ -62,7 +64,7 @@ fn race(
     outcome: &mut Outcome,
 ) {
     // Only built if a benchmark that was asked for needs it.
-    let build = OnceCell::new();
+    let build = OnceCell::<Build>::new();
     let mut group = criterion.benchmark_group(format!("{}/{}", subject.name, variant.name()));
     group.sampling_mode(SamplingMode::Flat);
     for set in ray_sets {
@@ -76,13 +78,14 @@ fn race(
                 let id = BenchmarkId::new(set.name, format!("{} {coherence:?}", call.name));
                 let mut duel = None;
                 group.bench_function(id, |bencher| {
-                    let build: &Build =
+                    let build =
                         build.get_or_init(|| Build::measure(subject, variant, effort.builds()));
                     let scene = build.accelerator.scene();
                     let duel = duel.get_or_insert_with(|| Duel::new(call, set));
                     bencher.iter_custom(|rounds| duel.run(scene, coherence, rounds));
                 });
-                if let Some(duel) = duel {
+                if let (Some(mut duel), Some(build)) = (duel, build.get()) {
+                    duel.compare(build.accelerator.scene(), coherence, effort.comparing());
                     outcome.rows.push(Row {
                         scene: subject.name,
                         variant,

@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::outcome::{Outcome, Row};
 
 /// Prints everything, and writes it to `cohort-bench/intersection.csv` and `.md` in cargo's target folder. Does nothing
-/// when nothing was measured, as in criterion's test mode.
+/// when the arguments left nothing to measure.
 pub fn publish(outcome: &Outcome) -> Result<(), Box<dyn Error>> {
     if outcome.rows.is_empty() {
         return Ok(());
