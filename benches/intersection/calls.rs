@@ -41,7 +41,7 @@ pub trait Buffers {
 pub const NEAREST: [Call; 9] = [
     Call {
         name: "intersect1",
-        lay_out: |rays| Array::new(ray_hits(rays), each_intersect1, plain_c::intersect1),
+        lay_out: |rays| Array::boxed(ray_hits(rays), each_intersect1, plain_c::intersect1),
     },
     Call {
         name: "intersect_packet 4",
@@ -62,7 +62,7 @@ pub const NEAREST: [Call; 9] = [
     Call {
         name: "intersect_stream_1m",
         lay_out: |rays| {
-            Array::new(
+            Array::boxed(
                 ray_hits(rays),
                 Scene::intersect_stream_1m,
                 plain_c::intersect_stream_1m,
@@ -87,7 +87,7 @@ pub const NEAREST: [Call; 9] = [
 pub const OCCLUDED: [Call; 9] = [
     Call {
         name: "occluded1",
-        lay_out: |rays| Array::new(single_rays(rays), each_occluded1, plain_c::occluded1),
+        lay_out: |rays| Array::boxed(single_rays(rays), each_occluded1, plain_c::occluded1),
     },
     Call {
         name: "occluded_packet 4",
@@ -108,7 +108,7 @@ pub const OCCLUDED: [Call; 9] = [
     Call {
         name: "occluded_stream_1m",
         lay_out: |rays| {
-            Array::new(
+            Array::boxed(
                 single_rays(rays),
                 Scene::occluded_stream_1m,
                 plain_c::occluded_stream_1m,
@@ -141,7 +141,7 @@ struct Array<R> {
 }
 
 impl<R: Copy + 'static> Array<R> {
-    fn new(rays: Vec<R>, safe: TraceAll<R>, plain_c: TraceAll<R>) -> Box<dyn Buffers> {
+    fn boxed(rays: Vec<R>, safe: TraceAll<R>, plain_c: TraceAll<R>) -> Box<dyn Buffers> {
         Box::new(Self {
             untraced: rays.clone(),
             rays,
@@ -271,7 +271,7 @@ fn each_occluded1(scene: &Scene, rays: &mut [Ray1], coherence: Coherence) {
 }
 
 fn intersect_packets<const K: usize>(rays: &Rays) -> Box<dyn Buffers> {
-    Array::new(
+    Array::boxed(
         ray_hit_packets::<K>(rays),
         |scene, packets, coherence| {
             for packet in packets {
@@ -285,7 +285,7 @@ fn intersect_packets<const K: usize>(rays: &Rays) -> Box<dyn Buffers> {
 }
 
 fn occluded_packets<const K: usize>(rays: &Rays) -> Box<dyn Buffers> {
-    Array::new(
+    Array::boxed(
         packets::<K>(rays),
         |scene, packets, coherence| {
             for packet in packets {
@@ -299,7 +299,7 @@ fn occluded_packets<const K: usize>(rays: &Rays) -> Box<dyn Buffers> {
 }
 
 fn intersect_stream_nm<const K: usize>(rays: &Rays) -> Box<dyn Buffers> {
-    Array::new(
+    Array::boxed(
         ray_hit_packets::<K>(rays),
         Scene::intersect_stream_nm,
         plain_c::intersect_stream_nm,
@@ -307,7 +307,7 @@ fn intersect_stream_nm<const K: usize>(rays: &Rays) -> Box<dyn Buffers> {
 }
 
 fn occluded_stream_nm<const K: usize>(rays: &Rays) -> Box<dyn Buffers> {
-    Array::new(
+    Array::boxed(
         packets::<K>(rays),
         Scene::occluded_stream_nm,
         plain_c::occluded_stream_nm,

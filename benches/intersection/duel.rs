@@ -110,23 +110,24 @@ impl Duel {
 }
 
 impl Stretch {
-    /// Lets the sides take turns with the same rays, which both find in the cache, and returns the shortest time of
-    /// plain C over the shortest of the safe call. In the order of turns nobody is favoured by coming later.
+    /// Lets the sides take turns with the same rays, which both find in the cache, and returns the time of plain C over
+    /// that of the safe call.
+    ///
+    /// The shortest times count, so that interruptions do not. The more often rays were traced, the faster they are, and
+    /// the last to trace them would win: hence two legs, each side being last in one, and the geometric mean of both.
     fn bout(&mut self, scene: &Scene, coherence: Coherence) -> f64 {
         use Side::{PlainC as C, Safe as S};
         for side in [S, C] {
             self.time(side, scene, coherence);
         }
-        let [mut safe, mut plain_c] = [f64::INFINITY; 2];
-        for side in [S, C, C, S, C, S, S, C] {
-            let time = self.time(side, scene, coherence);
-            let shortest = match side {
-                S => &mut safe,
-                C => &mut plain_c,
-            };
-            *shortest = shortest.min(time);
-        }
-        plain_c / safe
+        let mut leg = |[first, second]: [Side; 2]| {
+            let [a, b, c, d] =
+                [first, second, second, first].map(|side| self.time(side, scene, coherence));
+            (a.min(d), b.min(c))
+        };
+        let (safe, plain_c) = leg([S, C]);
+        let (plain_c_then, safe_then) = leg([C, S]);
+        (plain_c / safe * (plain_c_then / safe_then)).sqrt()
     }
 
     /// Traces all rays; returns seconds.
