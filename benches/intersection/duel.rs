@@ -10,10 +10,13 @@ use crate::ray_sets::{RaySet, STRETCH};
 /// An interval of a ratio that needs no further bouts.
 const NARROW: f64 = 0.01;
 
+/// Rounds of a bout, of which the shortest times count: interruptions do not.
+const BOUT: usize = 3;
+
 /// The rays of a set in the layout of one call, and what was measured with them.
 pub struct Duel {
     stretches: Vec<Stretch>,
-    /// Of every bout, the time of plain C over the time of the safe call.
+    /// Of every bout and pair of stretches, the time of plain C over the time of the safe call.
     ratios: Vec<f64>,
 }
 
@@ -31,7 +34,8 @@ pub struct Speed {
     pub safe: f64,
     /// Million rays a second through plain C.
     pub plain_c: f64,
-    /// The rate of the safe call over that of plain C: the median over all bouts.
+    /// The rate of the safe call over that of plain C: the median over all bouts and pairs of
+    /// stretches.
     pub ratio: f64,
     /// Where the ratio lies with 95 % confidence.
     pub ratio_interval: [f64; 2],
@@ -51,11 +55,11 @@ impl Duel {
         }
     }
 
-    /// Measures rates: traces the whole set `rounds` times by either side, and returns the time of the safe calls.
+    /// Traces the whole set `rounds` times by either side, and returns the time of the safe calls.
     ///
     /// The sides take turns, each with one stretch, and are half a set apart: as in a render, rays come after other
     /// rays, and neither side finds what the other has just looked up.
-    pub fn run(&mut self, scene: &Scene, coherence: Coherence, rounds: u64) -> Duration {
+    pub fn run(&mut self, scene: &Scene, coherence: Coherence, rounds: usize) -> Duration {
         if self.stretches.iter().all(|s| s.safe.is_empty()) {
             for stretch in &mut self.stretches {
                 stretch.time(Side::Safe, scene, coherence);
@@ -77,14 +81,18 @@ impl Duel {
         Duration::from_secs_f64(safe_time)
     }
 
-    /// Measures the ratio: a bout over every stretch, again and again until its interval is narrow enough or `at_most`
-    /// so much time has passed.
+    /// Measures the ratio, bout by bout, until its interval is narrow enough or `at_most` so much time has passed.
+    ///
+    /// The more often rays were traced, the faster they are. In each round safe calls are first with the first half of
+    /// the stretches, and plain C with the second: the geometric mean over one of each favours neither.
     pub fn compare(&mut self, scene: &Scene, coherence: Coherence, at_most: Duration) {
         let start = Instant::now();
         loop {
-            for stretch in &mut self.stretches {
-                self.ratios.push(stretch.bout(scene, coherence));
-            }
+            self.run(scene, coherence, BOUT);
+            let (first, second) = self.stretches.split_at(self.stretches.len() / 2);
+            let pairs = first.iter().zip(second);
+            let ratios = pairs.map(|(a, b)| (a.latest_ratio() * b.latest_ratio()).sqrt());
+            self.ratios.extend(ratios);
             let [low, high] = self.speed().ratio_interval;
             if high - low <= NARROW || start.elapsed() >= at_most {
                 return;
@@ -110,24 +118,13 @@ impl Duel {
 }
 
 impl Stretch {
-    /// Lets the sides take turns with the same rays, which both find in the cache, and returns the time of plain C over
-    /// that of the safe call.
-    ///
-    /// The shortest times count, so that interruptions do not. The more often rays were traced, the faster they are, and
-    /// the last to trace them would win: hence two legs, each side being last in one, and the geometric mean of both.
-    fn bout(&mut self, scene: &Scene, coherence: Coherence) -> f64 {
-        use Side::{PlainC as C, Safe as S};
-        for side in [S, C] {
-            self.time(side, scene, coherence);
-        }
-        let mut leg = |[first, second]: [Side; 2]| {
-            let [a, b, c, d] =
-                [first, second, second, first].map(|side| self.time(side, scene, coherence));
-            (a.min(d), b.min(c))
+    /// The shortest time of plain C over the shortest of the safe call in the latest bout.
+    fn latest_ratio(&self) -> f64 {
+        let shortest = |times: &[f64]| {
+            let latest = times.iter().rev().take(BOUT);
+            latest.copied().fold(f64::INFINITY, f64::min)
         };
-        let (safe, plain_c) = leg([S, C]);
-        let (plain_c_then, safe_then) = leg([C, S]);
-        (plain_c / safe * (plain_c_then / safe_then)).sqrt()
+        shortest(&self.plain_c) / shortest(&self.safe)
     }
 
     /// Traces all rays; returns seconds.

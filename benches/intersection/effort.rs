@@ -34,7 +34,7 @@ impl Effort {
     pub fn criterion(self) -> Criterion {
         let measuring = match self {
             Self::Test | Self::Quick => Duration::from_nanos(1),
-            Self::Full => Duration::from_millis(40),
+            Self::Full => Duration::from_millis(20),
         };
         Criterion::default()
             .without_plots()
@@ -44,11 +44,11 @@ impl Effort {
             .nresamples(1001)
     }
 
-    /// Stretches of rays in each set.
+    /// Stretches of rays in each set; pairs of them are needed for a ratio.
     pub fn stretches(self) -> usize {
         match self {
             Self::Test => 1,
-            Self::Quick => 4,
+            Self::Quick => 8,
             Self::Full => 16,
         }
     }
@@ -57,7 +57,7 @@ impl Effort {
     pub fn comparing(self) -> Duration {
         match self {
             Self::Test => Duration::ZERO,
-            Self::Quick => Duration::from_millis(10),
+            Self::Quick => Duration::from_millis(5),
             Self::Full => Duration::from_millis(500),
         }
     }

@@ -82,7 +82,7 @@ fn race(
                         build.get_or_init(|| Build::measure(subject, variant, effort.builds()));
                     let scene = build.accelerator.scene();
                     let duel = duel.get_or_insert_with(|| Duel::new(call, set));
-                    bencher.iter_custom(|rounds| duel.run(scene, coherence, rounds));
+                    bencher.iter_custom(|rounds| duel.run(scene, coherence, rounds as usize));
                 });
                 if let (Some(mut duel), Some(build)) = (duel, build.get()) {
                     duel.compare(build.accelerator.scene(), coherence, effort.comparing());
