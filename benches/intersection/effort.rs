@@ -48,7 +48,7 @@ impl Effort {
     pub fn stretches(self) -> usize {
         match self {
             Self::Test => 1,
-            Self::Quick => 8,
+            Self::Quick => 4,
             Self::Full => 16,
         }
     }
