@@ -22,11 +22,13 @@ fn main() {
         println!("cargo::rustc-cfg=embree4");
         println!("cargo::rerun-if-changed={HEADERS_OF_EMBREE_4}");
         check_embree4();
+        compile_plain_c("streams_embree4.c", &[("COHORT_EMBREE4", None)]);
     } else if has_3 {
         println!("cargo::rustc-cfg=embree3");
         println!("cargo::rerun-if-changed={HEADERS_OF_EMBREE_3}");
         println!("cargo::rustc-link-lib=embree3");
         declare_embree3();
+        compile_plain_c("streams_embree3.c", &[]);
     } else {
         fail(
             "Embree is not installed: install it with `apt-get install libembree-dev libclang-dev`.",
@@ -44,6 +46,23 @@ fn check_embree4() {
         fail(&format!(
             "The installed Embree 4 is not laid out like Embree 4.3, which Cohort is written for: {error}"
         ));
+    }
+}
+
+/// Compiles the calls in plain C that `benches/intersection.rs` measures the safe layer against, as
+/// optimised as they can be whatever the profile. Programs that do not call them do not contain them.
+fn compile_plain_c(streams: &str, definitions: &[(&str, Option<&str>)]) {
+    let folder = Path::new("vendor-ffi/plain_c");
+    let mut build = cc::Build::new();
+    build
+        .files([folder.join("packets.c"), folder.join(streams)])
+        .opt_level(3)
+        .std("c11");
+    for (name, value) in definitions {
+        build.define(name, *value);
+    }
+    if let Err(error) = build.try_compile("cohort_plain_c") {
+        fail(&format!("The calls in plain C cannot be compiled: {error}"));
     }
 }
 

@@ -15,7 +15,7 @@ SAME(sizeof(struct RTCRay), 48);
 SAME(offsetof(struct RTCRay, tfar), 32);
 SAME(offsetof(struct RTCRayHit, hit), 48);
 SAME(offsetof(struct RTCHit, instPrimID), 32);
-FITS(sizeof(struct RTCRayHit), 96);
+SAME(sizeof(struct RTCRayHit), 96);
 
 /* src/embree/packet.rs */
 #define PACKET(K)                                                                                  \

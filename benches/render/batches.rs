@@ -71,7 +71,12 @@ impl BatchSize {
                     pass,
                 };
                 let tile = &mut film.tiles_mut()[index];
-                self.tracer.trace(engine, &TileJob { key, samples }, tile);
+                let job = TileJob {
+                    key,
+                    first_sample: u64::from(pass * samples),
+                    samples,
+                };
+                self.tracer.trace(engine, &job, tile);
             }
         }
         let elapsed = start.elapsed();

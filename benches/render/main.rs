@@ -3,7 +3,7 @@
 //!
 //!     cargo bench --bench render [-- --quick]
 //!
-//! `docs/performance.md` says what is measured.
+//! `docs/benchmarks.md` says what is measured.
 
 mod batches;
 mod cases;

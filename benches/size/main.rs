@@ -2,7 +2,7 @@
 //!
 //!     scripts/size-study.sh [--quick]
 //!
-//! `docs/performance.md` says what is measured.
+//! `docs/benchmarks.md` says what is measured.
 
 #[path = "../common/effort.rs"]
 mod effort;

@@ -2,7 +2,7 @@
 //!
 //!     cargo bench --bench walk [-- --quick]
 //!
-//! `docs/performance.md` says what is measured.
+//! `docs/benchmarks.md` says what is measured.
 
 mod cases;
 #[path = "../common/effort.rs"]

@@ -48,6 +48,7 @@ impl Particles {
             shininess: &self.shininess,
             group: &self.group,
             depth: DEPTH,
+            points: None,
         }
     }
 }

@@ -25,6 +25,7 @@ mod error;
 mod geometry;
 mod lanes;
 mod packet;
+pub mod plain_c;
 mod query;
 mod raw;
 mod ray;

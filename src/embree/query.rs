@@ -4,8 +4,9 @@
 //! NaN or infinite origins and directions are allowed and give an unspecified answer.
 
 use super::calls;
+use super::geometry::INVALID_GEOMETRY;
 use super::packet::{RayHitPacket, RayPacket, ValidMask};
-use super::ray::{Hit1, Ray1, RayHit1};
+use super::ray::{Ray1, RayHit1};
 use super::scene::Scene;
 use super::stream::{Hits, Rays};
 
@@ -21,9 +22,10 @@ pub enum Coherence {
 
 /// Rays by the one.
 impl Scene {
-    /// Finds the nearest hit of one ray. Without one, `hit` is a miss and the ray keeps its `tfar`.
+    /// Finds the nearest hit of one ray. Without one, `hit` is a miss, of which only the geometry is defined, and the
+    /// ray keeps its `tfar`.
     pub fn intersect1(&self, ray_hit: &mut RayHit1, coherence: Coherence) {
-        ray_hit.hit = Hit1::MISS;
+        ray_hit.hit.geometry_id = INVALID_GEOMETRY;
         calls::intersect1(self, ray_hit, coherence);
     }
 
@@ -42,7 +44,7 @@ impl Scene {
         packet: &mut RayHitPacket<K>,
         coherence: Coherence,
     ) {
-        packet.hit.geometry_id.fill(super::INVALID_GEOMETRY);
+        packet.hit.geometry_id.fill(INVALID_GEOMETRY);
         calls::intersect_packet(self, valid, packet, coherence);
     }
 
@@ -73,7 +75,7 @@ impl Scene {
     /// [`intersect_stream`](Self::intersect_stream) for an array of structures.
     pub fn intersect_stream_1m(&self, rays: &mut [RayHit1], coherence: Coherence) {
         for ray_hit in &mut *rays {
-            ray_hit.hit = Hit1::MISS;
+            ray_hit.hit.geometry_id = INVALID_GEOMETRY;
         }
         calls::intersect_stream_1m(self, rays, coherence);
     }
@@ -90,7 +92,7 @@ impl Scene {
         coherence: Coherence,
     ) {
         for packet in &mut *packets {
-            packet.hit.geometry_id.fill(super::INVALID_GEOMETRY);
+            packet.hit.geometry_id.fill(INVALID_GEOMETRY);
         }
         calls::intersect_stream_nm(self, packets, coherence);
     }

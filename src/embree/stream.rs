@@ -172,12 +172,17 @@ impl Hits {
 
     /// Makes room for `len` rays and calls all of them misses.
     pub(super) fn reset(&mut self, len: usize) {
+        self.resize(len);
+        self.geometry_id.fill(INVALID_GEOMETRY);
+    }
+
+    /// Makes room for `len` rays, whose hits are unspecified.
+    pub(super) fn resize(&mut self, len: usize) {
         self.normal.iter_mut().for_each(|axis| axis.resize(len));
         self.u.resize(len);
         self.v.resize(len);
         self.primitive_id.resize(len);
         self.geometry_id.resize(len);
-        self.geometry_id.fill(INVALID_GEOMETRY);
     }
 
     /// Puts the hit of ray `i` in its place.

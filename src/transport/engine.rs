@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::accelerator::Accelerator;
 use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
+use super::recorded_rays::RecordedRays;
 use super::settings::{DirectLight, TransportSettings};
 use super::statistics::TraceStatistics;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_stage};
@@ -100,6 +101,8 @@ pub struct Tracer<C: Colour> {
     particles: Particles,
     offspring: Offspring,
     statistics: TraceStatistics,
+    /// Where rays are recorded, while they are.
+    pub(super) recorded: Option<RecordedRays>,
 }
 
 impl<C: Colour> Default for Tracer<C> {
@@ -112,6 +115,7 @@ impl<C: Colour> Default for Tracer<C> {
             particles: Particles::default(),
             offspring: Offspring::default(),
             statistics: TraceStatistics::default(),
+            recorded: None,
         }
     }
 }
@@ -169,6 +173,9 @@ impl<C: Colour> Tracer<C> {
             } else {
                 Coherence::Incoherent
             };
+            if let Some(recorded) = &mut self.recorded {
+                recorded.segments.push(self.segments.rays.clone());
+            }
             intersect::nearest(
                 &engine.accelerator,
                 coherence,
@@ -198,6 +205,9 @@ impl<C: Colour> Tracer<C> {
                     sampler,
                     &mut self.shadow,
                 );
+                if let Some(recorded) = &mut self.recorded {
+                    recorded.shadows.push(self.shadow.rays.clone());
+                }
                 intersect::occluded(&engine.accelerator, &mut self.shadow, &mut self.statistics);
                 direct::add_unoccluded(&self.shadow, &mut self.paths);
             }

@@ -20,6 +20,7 @@ mod engine;
 mod hidden_emitters;
 mod intersect;
 mod offset;
+mod recorded_rays;
 mod scatter;
 mod settings;
 mod statistics;
@@ -28,5 +29,6 @@ mod walk_stage;
 
 pub use accelerator::{Accelerator, AcceleratorOptions};
 pub use engine::{Engine, TileJob, TraceBatches, Tracer};
+pub use recorded_rays::RecordedRays;
 pub use settings::{DirectLight, TransportSettings};
 pub use statistics::TraceStatistics;

@@ -25,19 +25,24 @@ fn context(coherence: Coherence) -> raw::RTCIntersectContext {
     }
 }
 
-/// The context of a call that asks for occlusion.
+/// How rays can be traced as asked when they ask for occlusion.
 ///
 /// Debian's build of Embree 3.13.5 can hang for ever, or read beyond its stack, when coherent packets
 /// of 16 rays, or streams of them, are tested for occlusion in a scene both robust and compact on a
 /// processor with AVX-512: the compiler keeps a mask of 16 bits and reads 64 back. Such scenes are
 /// therefore traced as if the rays were incoherent; the answer is the same.
-fn occlusion_context(scene: &Scene, coherence: Coherence) -> raw::RTCIntersectContext {
+pub fn occlusion_coherence(scene: &Scene, asked: Coherence) -> Coherence {
     let options = scene.options();
     if options.robust && options.compact {
-        context(Coherence::Incoherent)
+        Coherence::Incoherent
     } else {
-        context(coherence)
+        asked
     }
+}
+
+/// The context of a call that asks for occlusion.
+fn occlusion_context(scene: &Scene, coherence: Coherence) -> raw::RTCIntersectContext {
+    context(occlusion_coherence(scene, coherence))
 }
 
 pub fn intersect1(scene: &Scene, ray_hit: &mut RayHit1, coherence: Coherence) {
@@ -102,6 +107,11 @@ pub fn occluded_packet<const K: usize>(
             _ => raw::rtcOccluded16(valid, scene, context, packet.cast()),
         }
     }
+}
+
+/// The width of the packets that streams are traced by: Embree's own affair.
+pub fn stream_packet_width(_scene: &Scene) -> usize {
+    0
 }
 
 /// The arrays of a stream. Embree takes those that are null for time 0, all bits of the mask, no

@@ -16,6 +16,16 @@ fn flags(coherence: Coherence) -> raw::RTCRayQueryFlags {
     }
 }
 
+/// How rays can be traced as asked when they ask for occlusion: always so. Embree 3 has an exception.
+pub fn occlusion_coherence(_scene: &Scene, asked: Coherence) -> Coherence {
+    asked
+}
+
+/// The widest packets that streams are traced by.
+pub fn stream_packet_width(scene: &Scene) -> usize {
+    scene.device().packet_width()
+}
+
 /// What `rtcInitIntersectArguments` makes, which is an inline function of the header.
 fn intersect_arguments(coherence: Coherence) -> raw::RTCIntersectArguments {
     raw::RTCIntersectArguments {
@@ -98,7 +108,7 @@ pub fn occluded_packet<const K: usize>(
 
 pub fn intersect_stream(scene: &Scene, rays: &mut Rays, hits: &mut Hits, coherence: Coherence) {
     assert_eq!(hits.len(), rays.len(), "a stream has as many hits as rays");
-    match scene.device().packet_width() {
+    match stream_packet_width(scene) {
         16 => intersect_by_packets::<16>(scene, rays, hits, coherence),
         8 => intersect_by_packets::<8>(scene, rays, hits, coherence),
         _ => intersect_by_packets::<4>(scene, rays, hits, coherence),
@@ -106,7 +116,7 @@ pub fn intersect_stream(scene: &Scene, rays: &mut Rays, hits: &mut Hits, coheren
 }
 
 pub fn occluded_stream(scene: &Scene, rays: &mut Rays, coherence: Coherence) {
-    match scene.device().packet_width() {
+    match stream_packet_width(scene) {
         16 => occluded_by_packets::<16>(scene, rays, coherence),
         8 => occluded_by_packets::<8>(scene, rays, coherence),
         _ => occluded_by_packets::<4>(scene, rays, coherence),

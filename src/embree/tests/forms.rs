@@ -3,6 +3,7 @@
 use super::super::{
     Coherence, Hit1, Hits, Ray1, RayHit1, RayHitPacket, RayPacket, Rays, Scene, ValidMask,
 };
+use super::plain_c_forms;
 
 /// What any form of call says about a ray.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +30,7 @@ pub const INTERSECT: [Intersect; 9] = [
     ("intersect_stream_nm 16", intersect_stream_nm::<16>),
 ];
 
-pub const OCCLUDED: [Occluded; 9] = [
+const OCCLUDED: [Occluded; 9] = [
     ("occluded1", occluded1),
     ("occluded_packet 4", occluded_packet::<4>),
     ("occluded_packet 8", occluded_packet::<8>),
@@ -41,6 +42,16 @@ pub const OCCLUDED: [Occluded; 9] = [
     ("occluded_stream_nm 16", occluded_stream_nm::<16>),
 ];
 
+/// Every form of the call for nearest hits, the safe layer's and plain C's.
+pub fn intersect_forms() -> impl Iterator<Item = Intersect> {
+    INTERSECT.into_iter().chain(plain_c_forms::INTERSECT)
+}
+
+/// Every form of the call for occlusion, the safe layer's and plain C's.
+pub fn occluded_forms() -> impl Iterator<Item = Occluded> {
+    OCCLUDED.into_iter().chain(plain_c_forms::OCCLUDED)
+}
+
 /// A hit that no call must leave as it is.
 const STALE: Hit1 = Hit1 {
     geometry_id: 77,
@@ -48,26 +59,26 @@ const STALE: Hit1 = Hit1 {
     ..Hit1::MISS
 };
 
-fn stale(ray: &Ray1) -> RayHit1 {
+pub(super) fn stale(ray: &Ray1) -> RayHit1 {
     RayHit1 {
         ray: *ray,
         hit: STALE,
     }
 }
 
-fn answer(ray_hit: &RayHit1) -> Answer {
+pub(super) fn answer(ray_hit: &RayHit1) -> Answer {
     Answer {
         hit: ray_hit.hit,
         tfar: ray_hit.ray.tfar,
     }
 }
 
-fn is_active(ray: &Ray1) -> bool {
+pub(super) fn is_active(ray: &Ray1) -> bool {
     ray.tnear <= ray.tfar
 }
 
 /// Rays in packets, the last of which may have inactive lanes.
-fn packets<const K: usize>(rays: &[Ray1]) -> Vec<RayPacket<K>> {
+pub(super) fn packets<const K: usize>(rays: &[Ray1]) -> Vec<RayPacket<K>> {
     rays.chunks(K)
         .map(|chunk| {
             let mut packet = RayPacket::INACTIVE;
@@ -79,7 +90,7 @@ fn packets<const K: usize>(rays: &[Ray1]) -> Vec<RayPacket<K>> {
         .collect()
 }
 
-fn ray_hit_packets<const K: usize>(rays: &[Ray1]) -> Vec<RayHitPacket<K>> {
+pub(super) fn ray_hit_packets<const K: usize>(rays: &[Ray1]) -> Vec<RayHitPacket<K>> {
     let mut packets: Vec<_> = packets(rays).into_iter().map(RayHitPacket::new).collect();
     for packet in &mut packets {
         packet.hit.geometry_id = [77; K];
@@ -87,11 +98,11 @@ fn ray_hit_packets<const K: usize>(rays: &[Ray1]) -> Vec<RayHitPacket<K>> {
     packets
 }
 
-fn valid<const K: usize>(rays: &RayPacket<K>) -> ValidMask<K> {
+pub(super) fn valid<const K: usize>(rays: &RayPacket<K>) -> ValidMask<K> {
     ValidMask::from_fn(|lane| rays.tnear[lane] <= rays.tfar[lane])
 }
 
-fn answers<const K: usize>(packets: &[RayHitPacket<K>], count: usize) -> Vec<Answer> {
+pub(super) fn answers<const K: usize>(packets: &[RayHitPacket<K>], count: usize) -> Vec<Answer> {
     (0..count)
         .map(|i| {
             let (RayHitPacket { ray, hit }, lane) = (&packets[i / K], i % K);
@@ -110,13 +121,13 @@ fn answers<const K: usize>(packets: &[RayHitPacket<K>], count: usize) -> Vec<Ans
         .collect()
 }
 
-fn occlusions<const K: usize>(packets: &[RayPacket<K>], count: usize) -> Vec<bool> {
+pub(super) fn occlusions<const K: usize>(packets: &[RayPacket<K>], count: usize) -> Vec<bool> {
     (0..count)
         .map(|i| packets[i / K].is_occluded(i % K))
         .collect()
 }
 
-fn stream(rays: &[Ray1]) -> Rays {
+pub(super) fn stream(rays: &[Ray1]) -> Rays {
     let mut stream = Rays::new();
     stream.resize(rays.len());
     for (i, ray) in rays.iter().enumerate() {

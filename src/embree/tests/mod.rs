@@ -2,6 +2,7 @@
 
 mod brute_force;
 mod forms;
+mod plain_c_forms;
 mod triangles;
 mod user_geometry;
 

@@ -7,7 +7,7 @@ use super::super::{
     Scene, SceneBuilder, TriangleMesh, VertexBuffer,
 };
 use super::brute_force::{Nearest, nearest};
-use super::forms::{Answer, INTERSECT, OCCLUDED};
+use super::forms::{Answer, INTERSECT, intersect_forms, occluded_forms};
 use super::{Numbers, all_options, device};
 
 /// Triangles in two meshes of a scene, the second starting at `split`.
@@ -124,7 +124,7 @@ fn every_form_of_call_agrees_with_brute_force() {
         for coherence in [Coherence::Coherent, Coherence::Incoherent] {
             for length in [0, 1, 15, 16, 17, 1000] {
                 let rays = &rays[..length];
-                for (name, intersect) in INTERSECT {
+                for (name, intersect) in intersect_forms() {
                     let answers = intersect(&scene, rays, coherence);
                     assert_eq!(answers.len(), length);
                     for (i, answer) in answers.iter().enumerate() {
@@ -135,7 +135,7 @@ fn every_form_of_call_agrees_with_brute_force() {
                         }
                     }
                 }
-                for (name, occluded) in OCCLUDED {
+                for (name, occluded) in occluded_forms() {
                     let answers = occluded(&scene, rays, coherence);
                     assert_eq!(answers.len(), length);
                     for (i, answer) in answers.iter().enumerate() {
@@ -205,7 +205,7 @@ fn an_empty_scene_is_missed() {
     let scene = SceneBuilder::new(&device(), BuildOptions::default())
         .build()
         .expect("a scene may be empty");
-    for (name, intersect) in INTERSECT {
+    for (name, intersect) in intersect_forms() {
         let answers = intersect(&scene, &rays(40), Coherence::Coherent);
         assert!(answers.iter().all(|answer| !answer.hit.is_hit()), "{name}");
     }

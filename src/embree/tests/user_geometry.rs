@@ -4,7 +4,7 @@ use super::super::{
     Bounds, BuildOptions, Coherence, EmbreeError, GeometryId, Ray1, Scene, SceneBuilder,
     UserGeometry, UserHit, UserRay,
 };
-use super::forms::{INTERSECT, OCCLUDED};
+use super::forms::{INTERSECT, intersect_forms, occluded_forms};
 use super::{Numbers, all_options, device};
 
 #[derive(Clone, Copy)]
@@ -123,7 +123,7 @@ fn every_form_of_call_agrees_with_the_closed_form_of_spheres() {
     for options in all_options() {
         let scene = scene(false, options);
         for coherence in [Coherence::Coherent, Coherence::Incoherent] {
-            for (name, intersect) in INTERSECT {
+            for (name, intersect) in intersect_forms() {
                 for (ray, answer) in rays.iter().zip(intersect(&scene, &rays, coherence)) {
                     let Some((sphere, t)) = expected(ray, &SPHERES) else {
                         assert!(!answer.hit.is_hit() && answer.tfar == ray.tfar, "{name}");
@@ -143,7 +143,7 @@ fn every_form_of_call_agrees_with_the_closed_form_of_spheres() {
                     );
                 }
             }
-            for (name, occluded) in OCCLUDED {
+            for (name, occluded) in occluded_forms() {
                 for (ray, answer) in rays.iter().zip(occluded(&scene, &rays, coherence)) {
                     assert_eq!(answer, expected(ray, &SPHERES).is_some(), "{name}");
                 }
@@ -158,7 +158,7 @@ fn a_panic_is_a_miss_and_is_reported() {
     let scene = scene(true, BuildOptions::default());
     let rays = rays();
     assert_eq!(scene.check(), Ok(()));
-    for (name, intersect) in INTERSECT {
+    for (name, intersect) in intersect_forms() {
         for (ray, answer) in rays
             .iter()
             .zip(intersect(&scene, &rays, Coherence::Incoherent))
@@ -176,7 +176,7 @@ fn a_panic_is_a_miss_and_is_reported() {
             }
         );
     }
-    for (name, occluded) in OCCLUDED {
+    for (name, occluded) in occluded_forms() {
         for (ray, answer) in rays
             .iter()
             .zip(occluded(&scene, &rays, Coherence::Incoherent))
