@@ -69,6 +69,7 @@ pub mod embree;
 pub mod film;
 pub mod models;
 pub mod render;
+mod room;
 pub mod sampling;
 pub mod scene;
 pub mod spectrum;

@@ -89,7 +89,7 @@ fn the_built_in_scene() {
         ("direct-light", "next-event"),
         ("max-depth", "unlimited"),
         ("robust", "false"),
-        ("build-quality", "high"),
+        ("build-quality", "low"),
         ("seed", "7"),
         ("threads", "2"),
         ("samples", "2"),

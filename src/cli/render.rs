@@ -81,7 +81,7 @@ pub struct RenderArgs {
     robust: bool,
 
     /// Effort in building the acceleration structure
-    #[arg(long, value_name = "EFFORT", value_enum, default_value_t = Quality::High)]
+    #[arg(long, value_name = "EFFORT", value_enum, default_value_t = Quality::Low)]
     build_quality: Quality,
 
     // Last, because its heading holds for all that follows.

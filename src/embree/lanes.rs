@@ -24,7 +24,9 @@ impl<T: Copy + Default> Lanes<T> {
     pub(super) fn resize(&mut self, len: usize) {
         let needed = len.div_ceil(WIDTH);
         if needed > self.blocks.len() {
-            self.blocks.resize(needed, Block([T::default(); WIDTH]));
+            // Batches differ a little in size: the first makes room for those that follow.
+            let room = needed.next_power_of_two();
+            self.blocks.resize(room, Block([T::default(); WIDTH]));
         }
         self.len = len;
     }

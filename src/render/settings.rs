@@ -95,7 +95,8 @@ pub struct Settings {
     pub max_depth: Option<NonZeroU32>,
     /// Watertight intersection, at some cost in ray rate.
     pub robust: bool,
-    /// Speed of building the acceleration structure against speed of the rays.
+    /// Effort in building the acceleration structure. More of it did not make rays faster where it was measured
+    /// (`docs/accuracy.md`).
     pub build_quality: BuildQuality,
 }
 
@@ -113,7 +114,7 @@ impl Default for Settings {
             direct_light: DirectLight::default(),
             max_depth: None,
             robust: false,
-            build_quality: BuildQuality::High,
+            build_quality: BuildQuality::Low,
         }
     }
 }

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::embree::{Hits, Rays};
+use crate::room::make_room;
 use crate::sampling::{Frame, SequencePoint, SolidAnglePdf};
 use crate::scene::Bsdf;
 use crate::spectrum::Colour;
@@ -82,10 +83,11 @@ impl<C: Colour> CameraPaths<C> {
         }
     }
 
-    pub fn clear(&mut self) {
-        self.wavelengths.clear();
-        self.radiance.clear();
-        self.filter_weight.clear();
+    /// Empties the paths and makes room for `count`.
+    pub fn restart(&mut self, count: usize) {
+        make_room(&mut self.wavelengths, count);
+        make_room(&mut self.radiance, count);
+        make_room(&mut self.filter_weight, count);
     }
 }
 
@@ -107,10 +109,10 @@ impl<C: Colour> Segments<C> {
 
     /// Empties the states and makes room for `count` rays, which the caller sets one by one.
     pub fn restart(&mut self, count: usize) {
-        self.path.clear();
-        self.throughput.clear();
-        self.point.clear();
-        self.direction_pdf.clear();
+        make_room(&mut self.path, count);
+        make_room(&mut self.throughput, count);
+        make_room(&mut self.point, count);
+        make_room(&mut self.direction_pdf, count);
         self.rays.resize(count);
     }
 
@@ -148,15 +150,16 @@ impl<C: Colour> Vertices<C> {
         self.path.len()
     }
 
-    pub fn clear(&mut self) {
-        self.path.clear();
-        self.throughput.clear();
-        self.point.clear();
-        self.position.clear();
-        self.geometric_normal.clear();
-        self.frame.clear();
-        self.outgoing.clear();
-        self.bsdf.clear();
+    /// Empties the vertices and makes room for `count`.
+    pub fn restart(&mut self, count: usize) {
+        make_room(&mut self.path, count);
+        make_room(&mut self.throughput, count);
+        make_room(&mut self.point, count);
+        make_room(&mut self.position, count);
+        make_room(&mut self.geometric_normal, count);
+        make_room(&mut self.frame, count);
+        make_room(&mut self.outgoing, count);
+        make_room(&mut self.bsdf, count);
     }
 }
 
@@ -168,13 +171,21 @@ impl<C: Colour> ShadowRays<C> {
             rays: Rays::default(),
         }
     }
+
+    /// Empties the states and makes room for `count` rays, which the caller sets one by one.
+    pub fn restart(&mut self, count: usize) {
+        make_room(&mut self.path, count);
+        make_room(&mut self.contribution, count);
+        self.rays.resize(count);
+    }
 }
 
 impl Particles {
-    pub fn clear(&mut self) {
-        self.importance.clear();
-        self.albedo.clear();
-        self.shininess.clear();
-        self.group.clear();
+    /// Empties the columns and makes room for `count` particles.
+    pub fn restart(&mut self, count: usize) {
+        make_room(&mut self.importance, count);
+        make_room(&mut self.albedo, count);
+        make_room(&mut self.shininess, count);
+        make_room(&mut self.group, count);
     }
 }

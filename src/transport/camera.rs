@@ -24,8 +24,9 @@ pub(super) fn start<C: Colour>(
 ) {
     let crop = engine.scene.film.crop;
     let corner = Vec2::new(crop.x as f32, crop.y as f32);
-    paths.clear();
-    segments.restart(tile.pixels.count() * job.samples as usize);
+    let count = tile.pixels.count() * job.samples as usize;
+    paths.restart(count);
+    segments.restart(count);
     for pixel in 0..tile.pixels.count() {
         let (x, y) = tile.position(pixel);
         let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);

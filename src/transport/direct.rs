@@ -29,9 +29,7 @@ pub(super) fn sample_lights<C: Colour>(
     shadow: &mut ShadowRays<C>,
 ) {
     let emitters = &engine.scene.emitters;
-    shadow.path.clear();
-    shadow.contribution.clear();
-    shadow.rays.resize(vertices.len());
+    shadow.restart(vertices.len());
     for i in 0..vertices.len() {
         let [choice, u, v] = sampler.numbers(vertices.point[i], Use::Light(depth));
         let chosen = ((choice * emitters.len() as f32) as usize).min(emitters.len() - 1);

@@ -27,7 +27,7 @@ pub(super) fn arrive<C: Colour>(
     camera_rays: bool,
     scatters: bool,
 ) {
-    vertices.clear();
+    vertices.restart(segments.len());
     let hidden = camera_rays && engine.settings.hide_emitters;
     let mut surfaces = SurfaceChunk::default();
     for start in (0..segments.len()).step_by(CHUNK) {

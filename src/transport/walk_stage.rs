@@ -23,7 +23,7 @@ pub(super) fn decide<C: Colour>(
         Scalar::Mean => spectrum.mean(),
         Scalar::Maximum => spectrum.max_component(),
     };
-    particles.clear();
+    particles.restart(vertices.len());
     particles.importance.extend(
         vertices
             .throughput

@@ -1,6 +1,7 @@
 //! The children that a strategy has given to a population.
 
 use super::{ExpectedCount, Population, Rounding, WalkReport};
+use crate::room::make_room;
 use crate::sampling::RandomStream;
 
 /// One particle of the next generation, at the vertex of its parent and about to choose its direction.
@@ -42,6 +43,8 @@ impl Offspring {
 
     /// Room for one wish per particle of a population, with unspecified contents.
     pub(super) fn wishes_mut(&mut self, particles: usize) -> &mut [f32] {
+        let room = particles.next_power_of_two();
+        self.wishes.reserve(room.saturating_sub(self.wishes.len()));
         self.wishes.resize(particles, 0.0);
         &mut self.wishes
     }
@@ -50,7 +53,7 @@ impl Offspring {
     /// zero exactly for the particles that do not matter, and for those with impossible numbers, which are reported.
     pub(super) fn settle(&mut self, population: &Population) -> WalkReport {
         let mut all_sound = true;
-        self.expected.clear();
+        make_room(&mut self.expected, population.len());
         self.expected.extend(
             population
                 .particles()
@@ -79,7 +82,8 @@ impl Offspring {
         population: &Population,
         random: &mut RandomStream,
     ) {
-        self.children.clear();
+        let children: ExpectedCount = self.expected.iter().copied().sum();
+        make_room(&mut self.children, children.whole() as usize + 1);
         rounding.draw(&self.expected, population, random, &mut self.children);
     }
 }
