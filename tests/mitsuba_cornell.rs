@@ -190,12 +190,12 @@ fn every_strategy() -> [Walk; 6] {
         // light is lost, and some leaves through the open front.
         StrategyKind::FixedDepth => Walk {
             max_depth: Some(48),
-            ..Walk::new(kind, 8)
+            ..Walk::new(kind, 10)
         },
         StrategyKind::Roulette | StrategyKind::ThroughputRoulette => Walk::new(kind, 10),
         // It ends paths from the first vertex on: cheap paths, and more of them.
         StrategyKind::ParticleFilter => Walk::new(kind, 20),
-        StrategyKind::GoWithTheWinners | StrategyKind::PaperParticleFilter => Walk::new(kind, 6),
+        StrategyKind::GoWithTheWinners | StrategyKind::PaperParticleFilter => Walk::new(kind, 9),
     })
 }
 
