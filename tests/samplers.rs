@@ -7,23 +7,11 @@ use std::sync::Arc;
 
 use cohort::render::{Budget, Render, Settings, StopFlag};
 use cohort::sampling::SamplerKind;
-use cohort::scene::{LoadOptions, Scene};
 use cohort::walk::{StrategyKind, StrategyOptions};
 
 use support::estimate::sidak_threshold;
-use support::files;
-use support::render::replicates;
+use support::render::{many_emitters, replicates};
 use support::replicates::Replicates;
-
-/// Several lights, shapes of all kinds.
-fn scene(size: u32) -> Arc<Scene> {
-    let options = LoadOptions {
-        definitions: vec![("size".into(), size.to_string())],
-        models: None,
-    };
-    let path = files::of_project("tests/scenes/many-emitters.xml");
-    Arc::new(Scene::load(path, &options).expect("the scene can be loaded"))
-}
 
 fn settings(strategy: StrategyKind, sampler: SamplerKind) -> Settings {
     Settings {
@@ -47,7 +35,7 @@ fn noise(images: &Replicates) -> f64 {
 
 #[test]
 fn every_strategy_renders_the_same_image_by_sobol_points() {
-    let scene = scene(24);
+    let scene = many_emitters(24);
     // Of one pass there is one unit of samples: the film does not say how noisy it is, as it could not know.
     const SPP: u32 = 16;
     let reference = replicates(
@@ -75,7 +63,7 @@ fn every_strategy_renders_the_same_image_by_sobol_points() {
 
 #[test]
 fn sobol_points_leave_less_noise() {
-    let scene = scene(24);
+    let scene = many_emitters(24);
     let of = |sampler| {
         let settings = settings(StrategyKind::Roulette, sampler);
         noise(&replicates(&scene, settings, 0..24, 16))
@@ -88,7 +76,7 @@ fn sobol_points_leave_less_noise() {
 /// Threads, slices and the passes of other budgets do not matter.
 #[test]
 fn sobol_renders_are_deterministic() {
-    let scene = scene(40);
+    let scene = many_emitters(40);
     let spp = |samples| Budget::SamplesPerPixel(NonZeroU32::new(samples).expect("not zero"));
     let image = |threads: usize, slices: &[u32]| {
         let settings = Settings {

@@ -3,25 +3,13 @@
 mod support;
 
 use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
-use std::sync::Arc;
 use std::time::Duration;
 
 use cohort::film::Film;
 use cohort::render::{Budget, Ended, Render, RenderState, Settings, StopFlag};
-use cohort::scene::{LoadOptions, Scene};
 use cohort::walk::{StrategyKind, StrategyOptions};
 
-use support::files;
-
-/// 40 x 40 pixels: nine tiles, some of them not full.
-fn scene(size: u32) -> Arc<Scene> {
-    let options = LoadOptions {
-        definitions: vec![("size".into(), size.to_string())],
-        models: None,
-    };
-    let path = files::of_project("tests/scenes/many-emitters.xml");
-    Arc::new(Scene::load(path, &options).expect("the scene can be loaded"))
-}
+use support::render::many_emitters;
 
 fn render(strategy: StrategyKind, budget: Budget, threads: usize) -> Render {
     let settings = Settings {
@@ -32,7 +20,7 @@ fn render(strategy: StrategyKind, budget: Budget, threads: usize) -> Render {
         threads: NonZeroUsize::new(threads).expect("there is a thread"),
         ..Settings::default()
     };
-    Render::new(scene(40), settings).expect("the scene can be rendered")
+    Render::new(many_emitters(40), settings).expect("the scene can be rendered")
 }
 
 fn spp(samples: u32) -> Budget {
@@ -213,6 +201,7 @@ fn a_raised_flag_stops_at_once() {
 #[test]
 fn a_state_of_another_image_does_not_fit() {
     let render = render(StrategyKind::Roulette, OPEN, 1);
-    let other = Render::new(scene(41), Settings::default()).expect("the scene can be rendered");
+    let other =
+        Render::new(many_emitters(41), Settings::default()).expect("the scene can be rendered");
     assert!(render.fits(&render.start(5)) && !render.fits(&other.start(5)));
 }

@@ -189,6 +189,17 @@ mod tests {
         }
     }
 
+    /// The bits that a coordinate does not have are random: without them, what is less probable than 2^-23 could not happen.
+    #[test]
+    fn decisions_have_32_random_bits() {
+        let mut sampler = Sampler::new(SamplerKind::Sobol, KEY);
+        let point = sampler.point(4, 5);
+        let drawn = [(); 4096].map(|()| decision(point, 0, sampler.stream()));
+        let low: std::collections::BTreeSet<u32> = drawn.iter().map(|bits| bits & 511).collect();
+        assert!(low.len() > 500, "{}", low.len());
+        assert!(drawn.iter().all(|bits| bits >> 9 == drawn[0] >> 9));
+    }
+
     /// The passes of a pixel go on with one sequence: of 16 samples in two passes, one lies in each sixteenth.
     #[test]
     fn passes_share_a_sequence() {

@@ -4,9 +4,20 @@ use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use cohort::render::{Budget, Render, Settings, StopFlag};
-use cohort::scene::Scene;
+use cohort::scene::{LoadOptions, Scene};
 
+use super::files;
 use super::replicates::Replicates;
+
+/// `tests/scenes/many-emitters.xml` of `side` x `side` pixels: several lights, shapes of all kinds.
+pub fn many_emitters(side: u32) -> Arc<Scene> {
+    let options = LoadOptions {
+        definitions: vec![("size".into(), side.to_string())],
+        models: None,
+    };
+    let path = files::of_project("tests/scenes/many-emitters.xml");
+    Arc::new(Scene::load(path, &options).expect("the scene can be loaded"))
+}
 
 /// Renders with `settings` one image for each of `seeds`, with `spp` samples per pixel.
 ///
