@@ -6,6 +6,7 @@
 //! `docs/benchmarks.md` says what is measured.
 
 mod batches;
+#[path = "../common/cases.rs"]
 mod cases;
 #[path = "../common/effort.rs"]
 mod effort;

@@ -39,7 +39,7 @@ impl<'a> Watch<'a> {
         observer: &'a dyn Observer,
     ) -> Self {
         let statistics = state.statistics;
-        let traced = statistics.total_time.as_nanos() as u64;
+        let traced = statistics.stages.total().as_nanos() as u64;
         Self {
             until,
             pixels: state.film.size().pixels(),

@@ -1,12 +1,12 @@
 //! One batch from the camera to its end.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use super::accelerator::Accelerator;
 use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
 use super::recorded_rays::RecordedRays;
 use super::settings::{DirectLight, TransportSettings};
+use super::stages::{Stage, Stopwatch};
 use super::statistics::TraceStatistics;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_stage};
 use crate::embree::{Coherence, Version};
@@ -132,7 +132,7 @@ pub trait TraceBatches: Send {
 
 impl<C: Colour> TraceBatches for Tracer<C> {
     fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
-        let start = Instant::now();
+        let mut stopwatch = Stopwatch::start();
         let mut sampler = Sampler::new(engine.settings.sampler, job.key);
         camera::start(
             engine,
@@ -142,10 +142,11 @@ impl<C: Colour> TraceBatches for Tracer<C> {
             &mut self.paths,
             &mut self.segments,
         );
-        self.follow(engine, job, &mut sampler);
+        stopwatch.lap(Stage::Camera, &mut self.statistics.stages);
+        self.follow(engine, job, &mut sampler, &mut stopwatch);
         self.expose(engine, job, tile);
+        stopwatch.lap(Stage::Splat, &mut self.statistics.stages);
         self.statistics.camera_paths += self.paths.radiance.len() as u64;
-        self.statistics.total_time += start.elapsed();
     }
 
     fn take_statistics(&mut self) -> TraceStatistics {
@@ -155,7 +156,13 @@ impl<C: Colour> TraceBatches for Tracer<C> {
 
 impl<C: Colour> Tracer<C> {
     /// Moves the batch from vertex to vertex until no particle is left.
-    fn follow(&mut self, engine: &Engine, job: &TileJob, sampler: &mut Sampler) {
+    fn follow(
+        &mut self,
+        engine: &Engine,
+        job: &TileJob,
+        sampler: &mut Sampler,
+        stopwatch: &mut Stopwatch,
+    ) {
         let max_depth = engine.settings.max_depth.unwrap_or(u32::MAX);
         let next_event = engine.settings.direct_light == DirectLight::NextEvent
             && !engine.scene.emitters.is_empty();
@@ -185,6 +192,7 @@ impl<C: Colour> Tracer<C> {
             if camera_rays && engine.settings.hide_emitters {
                 hidden_emitters::look_through(engine, &mut self.segments, &mut self.statistics);
             }
+            stopwatch.lap(Stage::Intersect, &mut self.statistics.stages);
             let scatters = depth + 1 < max_depth;
             emission::arrive(
                 engine,
@@ -194,6 +202,7 @@ impl<C: Colour> Tracer<C> {
                 camera_rays,
                 scatters,
             );
+            stopwatch.lap(Stage::Emission, &mut self.statistics.stages);
             self.statistics.vertices += self.vertices.len() as u64;
             self.statistics.deepest = self.statistics.deepest.max(depth + 1);
             if next_event {
@@ -205,11 +214,14 @@ impl<C: Colour> Tracer<C> {
                     sampler,
                     &mut self.shadow,
                 );
+                stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
                 if let Some(recorded) = &mut self.recorded {
                     recorded.shadows.push(self.shadow.rays.clone());
                 }
                 intersect::occluded(&engine.accelerator, &mut self.shadow, &mut self.statistics);
+                stopwatch.lap(Stage::Intersect, &mut self.statistics.stages);
                 direct::add_unoccluded(&self.shadow, &mut self.paths);
+                stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
             }
             self.statistics.walk += walk_stage::decide(
                 engine.strategy(),
@@ -220,6 +232,7 @@ impl<C: Colour> Tracer<C> {
                 sampler,
                 &mut self.offspring,
             );
+            stopwatch.lap(Stage::Walk, &mut self.statistics.stages);
             scatter::scatter(
                 &self.vertices,
                 self.offspring.children(),
@@ -227,6 +240,7 @@ impl<C: Colour> Tracer<C> {
                 sampler,
                 &mut self.segments,
             );
+            stopwatch.lap(Stage::Scatter, &mut self.statistics.stages);
         }
     }
 

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use super::stages::StageTimes;
 use crate::walk::WalkReport;
 
 /// Counts of one or more batches.
@@ -20,8 +21,8 @@ pub struct TraceStatistics {
     pub vertices: u64,
     /// Time inside calls of the intersection layer, summed over threads.
     pub intersection_time: Duration,
-    /// Time inside the engine, summed over threads.
-    pub total_time: Duration,
+    /// Time inside the engine, by stage, summed over threads.
+    pub stages: StageTimes,
     /// Samples that were dropped, and why.
     pub dropped: DroppedSamples,
     /// What the strategy found wrong with the numbers it was given.
@@ -51,7 +52,7 @@ impl TraceStatistics {
 
     /// The share of the engine's time that was spent inside the intersection layer, in [0, 1].
     pub fn intersection_share(&self) -> f64 {
-        let total = self.total_time.as_secs_f64();
+        let total = self.stages.total().as_secs_f64();
         if total > 0.0 {
             self.intersection_time.as_secs_f64() / total
         } else {
@@ -83,7 +84,7 @@ impl AddAssign for TraceStatistics {
         self.shadow_rays += other.shadow_rays;
         self.vertices += other.vertices;
         self.intersection_time += other.intersection_time;
-        self.total_time += other.total_time;
+        self.stages += other.stages;
         self.dropped += other.dropped;
         self.walk += other.walk;
         self.deepest = self.deepest.max(other.deepest);
