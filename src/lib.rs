@@ -67,6 +67,7 @@
 
 pub mod embree;
 pub mod film;
+mod lanes;
 pub mod models;
 pub mod render;
 mod room;

@@ -15,7 +15,7 @@ pub struct Frame {
 
 impl Frame {
     /// The frame about the unit vector `normal` (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
-    #[inline]
+    #[inline(always)]
     pub fn about(normal: Vec3) -> Self {
         let sign = 1.0_f32.copysign(normal.z);
         let a = -1.0 / (sign + normal.z);
@@ -42,7 +42,7 @@ impl Frame {
     }
 
     /// A direction of this frame in world space.
-    #[inline]
+    #[inline(always)]
     pub fn to_world(&self, local: Vec3) -> Vec3 {
         self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
     }

@@ -21,7 +21,7 @@ impl AreaPdf {
 
 impl SolidAnglePdf {
     /// The density of a strategy that is itself chosen with probability `probability`.
-    #[inline]
+    #[inline(always)]
     pub fn chosen_with(self, probability: f32) -> Self {
         Self(self.0 * probability)
     }
@@ -31,7 +31,7 @@ impl SolidAnglePdf {
 /// `other`: the power heuristic with exponent 2 (Veach 1997, section 9.2.4).
 ///
 /// It is in [0, 1], and it is 1 where the other strategy cannot draw the sample.
-#[inline]
+#[inline(always)]
 pub fn power_heuristic(own: SolidAnglePdf, other: SolidAnglePdf) -> f32 {
     // The ratio, unlike the squares, neither overflows nor underflows for densities that matter.
     let ratio = other.0 / own.0;

@@ -129,6 +129,31 @@ impl Sampler {
         }
     }
 
+    /// [`Self::numbers`] for each of `points`: `lanes` has one array per number, and a lane for each point.
+    #[inline(always)]
+    pub fn fill<const N: usize, const LANES: usize>(
+        &mut self,
+        points: &[SequencePoint],
+        what: Use,
+        lanes: &mut [[f32; LANES]; N],
+    ) {
+        for (lane, &point) in points.iter().enumerate() {
+            match self.kind {
+                SamplerKind::Independent => {
+                    for lanes in lanes.iter_mut() {
+                        lanes[lane] = self.stream.uniform();
+                    }
+                }
+                SamplerKind::Sobol => {
+                    let coordinates = point.coordinates(what.dimensions());
+                    for (lanes, coordinate) in lanes.iter_mut().zip(coordinates) {
+                        lanes[lane] = coordinate;
+                    }
+                }
+            }
+        }
+    }
+
     /// The stream of independent numbers.
     pub fn stream(&mut self) -> &mut RandomStream {
         &mut self.stream

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use super::SolidAnglePdf;
 
 /// A uniform point of the unit disk, by the concentric map (Shirley and Chiu 1997).
-#[inline]
+#[inline(always)]
 pub fn disk(u: [f32; 2]) -> Vec2 {
     let x = 2.0 * u[0] - 1.0;
     let y = 2.0 * u[1] - 1.0;
@@ -27,7 +27,7 @@ pub fn disk(u: [f32; 2]) -> Vec2 {
 
 /// Sine and cosine of an angle between -pi/4 and pi/4, within two units of the last place: the minimax polynomials of
 /// Cephes (`sinf.c`, Moshier 1992). Unlike the system's functions they are the same everywhere, and vectorise.
-#[inline]
+#[inline(always)]
 fn sin_cos_of_eighth(angle: f32) -> (f32, f32) {
     let z = angle * angle;
     let sin = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * angle + angle;
@@ -36,7 +36,7 @@ fn sin_cos_of_eighth(angle: f32) -> (f32, f32) {
 }
 
 /// A local direction of the upper hemisphere (z > 0), distributed like its cosine.
-#[inline]
+#[inline(always)]
 pub fn cosine_hemisphere(u: [f32; 2]) -> Vec3 {
     let p = disk(u);
     // A point on the rim would be a direction in the surface, which has density 0.
@@ -45,7 +45,7 @@ pub fn cosine_hemisphere(u: [f32; 2]) -> Vec3 {
 }
 
 /// The density of [`cosine_hemisphere`] for a direction with cosine `cosine` (0 below the horizon).
-#[inline]
+#[inline(always)]
 pub fn cosine_hemisphere_pdf(cosine: f32) -> SolidAnglePdf {
     SolidAnglePdf(cosine.max(0.0) * FRAC_1_PI)
 }

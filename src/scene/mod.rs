@@ -11,6 +11,7 @@ mod spectra;
 pub mod xml;
 
 pub use bsdfs::{Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Model, Side};
+pub(crate) use bsdfs::{BsdfSamples, BsdfValues};
 pub use emitters::{AreaLight, ConstantLight, Emitter, LightSample, PointLight};
 pub use error::{Location, SceneError};
 pub use load::LoadOptions;
@@ -18,7 +19,7 @@ pub use sensors::{
     CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis,
     ImageSize, Perspective, PixelFormat, Projection, ReconstructionFilter,
 };
-pub(crate) use shapes::{CornerLanes, SurfaceLanes};
+pub(crate) use shapes::{CornerLanes, Parallelogram, SurfaceLanes};
 pub use shapes::{
     Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape, ShapeSample, Sphere,
     SurfacePoint, TriangleAttributes, Triangles,

@@ -59,7 +59,7 @@ const fn srgb_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
 /// The weight of the wavelength `nm` in linear sRGB, per nm: the integral over the wavelength of a spectral
 /// radiance times this is its linear sRGB colour. Linear between the CIE's entries; `nm` must lie in
 /// [`WAVELENGTH_MIN`]`..=`[`WAVELENGTH_MAX`].
-#[inline]
+#[inline(always)]
 pub(super) fn matching_srgb(nm: f32) -> [f32; 3] {
     let (entry, fraction) = locate(nm);
     let (before, after) = (MATCHING_SRGB[entry], MATCHING_SRGB[entry + 1]);
@@ -68,14 +68,14 @@ pub(super) fn matching_srgb(nm: f32) -> [f32; 3] {
 
 /// Spectral radiance of the illuminant D65 of luminance 1 at the wavelength `nm`, which must lie in
 /// [`WAVELENGTH_MIN`]`..=`[`WAVELENGTH_MAX`].
-#[inline]
+#[inline(always)]
 pub(super) fn illuminant_d65(nm: f32) -> f32 {
     let (entry, fraction) = locate(nm);
     (D65[entry] + fraction * (D65[entry + 1] - D65[entry])) * D65_NORMALISATION as f32
 }
 
 /// The entry of a CIE table at or before `nm`, and the fraction of the way from there to the next.
-#[inline]
+#[inline(always)]
 fn locate(nm: f32) -> (usize, f32) {
     let position = (nm - WAVELENGTH_MIN) * (1.0 / STEP);
     let entry = (position as usize).min(ENTRIES - 2);

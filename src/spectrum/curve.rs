@@ -152,19 +152,28 @@ impl SpectralCurve {
     #[inline(always)]
     pub fn evaluate<const N: usize>(&self, wavelengths: &Wavelengths<N>) -> Spectrum<N> {
         // One branch for all wavelengths, and a loop that the compiler can vectorise in each arm.
-        Spectrum(match &self.shape {
-            Shape::Constant(value) => [*value; N],
-            Shape::Tabulated(PiecewiseLinear::Regular(table)) => {
-                wavelengths.nm().map(|nm| table.at(nm))
-            }
+        let nm = wavelengths.nm();
+        let mut values = [0.0; N];
+        match &self.shape {
+            Shape::Constant(value) => values = [*value; N],
+            Shape::Tabulated(PiecewiseLinear::Regular(table)) => values = table.evaluate(nm),
             Shape::Tabulated(PiecewiseLinear::Irregular(table)) => {
-                wavelengths.nm().map(|nm| table.at(nm))
+                for i in 0..N {
+                    values[i] = table.at(nm[i]);
+                }
             }
-            Shape::Sigmoid(reflectance) => wavelengths.nm().map(|nm| reflectance.at(nm)),
-            Shape::FilteredD65 { filter, scale } => wavelengths
-                .nm()
-                .map(|nm| scale * filter.at(nm) * illuminant_d65(nm)),
-        })
+            Shape::Sigmoid(reflectance) => {
+                for i in 0..N {
+                    values[i] = reflectance.at(nm[i]);
+                }
+            }
+            Shape::FilteredD65 { filter, scale } => {
+                for i in 0..N {
+                    values[i] = scale * filter.at(nm[i]) * illuminant_d65(nm[i]);
+                }
+            }
+        }
+        Spectrum(values)
     }
 }
 

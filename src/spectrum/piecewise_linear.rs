@@ -20,8 +20,15 @@ pub(super) struct RegularTable {
     last_nm: f32,
     /// Entries per nm.
     entries_per_nm: f32,
-    /// At least two values.
-    values: Box<[f32]>,
+    /// Of every entry but the last, at least one: its value, and the next one less it.
+    intervals: Box<[Interval]>,
+}
+
+/// From one entry of a table to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Interval {
+    value: f32,
+    difference: f32,
 }
 
 /// Values at increasing wavelengths.
@@ -68,15 +75,23 @@ impl PiecewiseLinear {
             previous_nm = nm;
         }
         let nm: Box<[f32]> = entries.iter().map(|entry| entry.0).collect();
-        let values = entries.iter().map(|entry| entry.1).collect();
         Ok(match regular_step(&nm) {
             Some(step) => Self::Regular(RegularTable {
                 first_nm: nm[0],
                 last_nm: nm[nm.len() - 1],
                 entries_per_nm: (1.0 / step) as f32,
-                values,
+                intervals: entries
+                    .windows(2)
+                    .map(|pair| Interval {
+                        value: pair[0].1,
+                        difference: pair[1].1 - pair[0].1,
+                    })
+                    .collect(),
             }),
-            None => Self::Irregular(IrregularTable { nm, values }),
+            None => Self::Irregular(IrregularTable {
+                nm,
+                values: entries.iter().map(|entry| entry.1).collect(),
+            }),
         })
     }
 
@@ -84,30 +99,45 @@ impl PiecewiseLinear {
     #[inline]
     pub(super) fn at(&self, nm: f32) -> f32 {
         match self {
-            Self::Regular(table) => table.at(nm),
+            Self::Regular(table) => table.evaluate(&[nm])[0],
             Self::Irregular(table) => table.at(nm),
         }
     }
 
     /// Whether it is zero at all wavelengths.
     pub(super) fn is_zero(&self) -> bool {
-        let (Self::Regular(RegularTable { values, .. })
-        | Self::Irregular(IrregularTable { values, .. })) = self;
-        values.iter().all(|&value| value == 0.0)
+        match self {
+            Self::Regular(table) => {
+                let is_zero =
+                    |interval: &Interval| interval.value == 0.0 && interval.difference == 0.0;
+                table.intervals.iter().all(is_zero)
+            }
+            Self::Irregular(table) => table.values.iter().all(|&value| value == 0.0),
+        }
     }
 }
 
 impl RegularTable {
-    /// The value at `nm`.
-    #[inline]
-    pub(super) fn at(&self, nm: f32) -> f32 {
-        // Without a jump: random wavelengths leave the range too unpredictably for one.
-        let last = self.values.len() - 1;
-        let position = ((nm - self.first_nm) * self.entries_per_nm).clamp(0.0, last as f32);
-        let entry = (position as usize).min(last - 1);
-        let (before, after) = (self.values[entry], self.values[entry + 1]);
-        let inside = f32::from(u8::from(nm >= self.first_nm && nm <= self.last_nm));
-        inside * (before + (position - entry as f32) * (after - before))
+    /// The value at each of the wavelengths `nm`.
+    #[inline(always)]
+    pub(super) fn evaluate<const N: usize>(&self, nm: &[f32; N]) -> [f32; N] {
+        let last = self.intervals.len() - 1;
+        let (mut entries, mut fractions, mut inside) = ([0_i32; N], [0.0; N], [0.0; N]);
+        for i in 0..N {
+            // Without a jump: random wavelengths leave the range too unpredictably for one.
+            let position = (nm[i] - self.first_nm) * self.entries_per_nm;
+            let entry = (position as i32).clamp(0, last as i32);
+            entries[i] = entry;
+            fractions[i] = (position - entry as f32).clamp(0.0, 1.0);
+            let is_inside = (nm[i] >= self.first_nm) & (nm[i] <= self.last_nm);
+            inside[i] = if is_inside { 1.0 } else { 0.0 };
+        }
+        let mut values = [0.0; N];
+        for i in 0..N {
+            let Interval { value, difference } = self.intervals[entries[i] as usize];
+            values[i] = inside[i] * (value + fractions[i] * difference);
+        }
+        values
     }
 }
 

@@ -32,7 +32,7 @@ impl SigmoidPolynomial {
     }
 
     /// The reflectance at the wavelength `nm`, in [0, 1].
-    #[inline]
+    #[inline(always)]
     pub(super) fn at(&self, nm: f32) -> f32 {
         let [c0, c1, c2] = self.coefficients;
         let t = (nm - CENTRE) * PER_HALF_RANGE;

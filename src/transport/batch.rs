@@ -1,10 +1,9 @@
 //! Path states as structures of arrays. Buffers are kept between batches: after the first, nothing is allocated.
 
-use glam::Vec3;
-
 use crate::embree::{Hits, Rays};
+use crate::lanes::VectorColumn;
 use crate::room::make_room;
-use crate::sampling::{Frame, SequencePoint, SolidAnglePdf};
+use crate::sampling::{SequencePoint, SolidAnglePdf};
 use crate::scene::Bsdf;
 use crate::spectrum::Colour;
 
@@ -44,13 +43,11 @@ pub(super) struct Vertices<C: Colour> {
     /// Where the particle stands in its sequence of random numbers.
     pub point: Vec<SequencePoint>,
     /// Position in world space.
-    pub position: Vec<Vec3>,
+    pub position: VectorColumn,
     /// Unit geometric normal in world space.
-    pub geometric_normal: Vec<Vec3>,
-    /// Shading frame of the side that was hit.
-    pub frame: Vec<Frame>,
-    /// Unit direction to where the path comes from, in that frame.
-    pub outgoing: Vec<Vec3>,
+    pub geometric_normal: VectorColumn,
+    /// Unit shading normal of the side that was hit, in world space.
+    pub normal: VectorColumn,
     /// The bsdf of that side at the path's wavelengths.
     pub bsdf: Vec<Bsdf<C::Spectrum>>,
 }
@@ -138,10 +135,9 @@ impl<C: Colour> Vertices<C> {
             path: Vec::new(),
             throughput: Vec::new(),
             point: Vec::new(),
-            position: Vec::new(),
-            geometric_normal: Vec::new(),
-            frame: Vec::new(),
-            outgoing: Vec::new(),
+            position: VectorColumn::default(),
+            geometric_normal: VectorColumn::default(),
+            normal: VectorColumn::default(),
             bsdf: Vec::new(),
         }
     }
@@ -155,10 +151,9 @@ impl<C: Colour> Vertices<C> {
         make_room(&mut self.path, count);
         make_room(&mut self.throughput, count);
         make_room(&mut self.point, count);
-        make_room(&mut self.position, count);
-        make_room(&mut self.geometric_normal, count);
-        make_room(&mut self.frame, count);
-        make_room(&mut self.outgoing, count);
+        self.position.restart(count);
+        self.geometric_normal.restart(count);
+        self.normal.restart(count);
         make_room(&mut self.bsdf, count);
     }
 }

@@ -5,9 +5,11 @@ use multiversion::multiversion;
 
 use super::batch::{CameraPaths, ShadowRays, Vertices};
 use super::engine::Engine;
+use super::light_chunk::LightChunk;
 use super::offset::leave_surface;
-use crate::sampling::{Sampler, Use, power_heuristic};
-use crate::scene::LightSample;
+use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
+use crate::sampling::{Sampler, SolidAnglePdf, Use, power_heuristic};
+use crate::scene::BsdfValues;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Shadow rays end this share of their length before the light, so that they do not meet it.
@@ -28,64 +30,127 @@ pub(super) fn sample_lights<C: Colour>(
     sampler: &mut Sampler,
     shadow: &mut ShadowRays<C>,
 ) {
-    let emitters = &engine.scene.emitters;
     shadow.restart(vertices.len());
-    for i in 0..vertices.len() {
-        let [choice, u, v] = sampler.numbers(vertices.point[i], Use::Light(depth));
-        let chosen = ((choice * emitters.len() as f32) as usize).min(emitters.len() - 1);
-        let path = vertices.path[i];
-        let position = vertices.position[i];
-        let wavelengths = &paths.wavelengths[path as usize];
-        let Some(light) =
-            emitters[chosen].sample::<C>(&engine.scene.shapes, position, wavelengths, [u, v])
-        else {
-            continue;
-        };
-        let incident = vertices.frame[i].to_local(light.direction);
-        let bsdf = vertices.bsdf[i].evaluate(vertices.outgoing[i], incident);
-        let mis = match light.pdf {
-            Some(pdf) => power_heuristic(pdf.chosen_with(engine.light_choice), bsdf.pdf),
-            None => 1.0,
-        };
-        let contribution =
-            vertices.throughput[i] * bsdf.value * light.weight * (mis / engine.light_choice);
-        if contribution.is_black() {
-            continue;
-        }
-        let origin = leave_surface(position, vertices.geometric_normal[i], light.direction);
-        let (direction, length) = towards(position, origin, &light);
-        shadow.rays.set(
-            shadow.path.len(),
-            origin.into(),
-            direction.into(),
-            0.0,
-            length * SHADOW_END,
+    let mut numbers = [[0.0; CHUNK]; 3];
+    let mut positions = VectorLanes::default();
+    let mut normals = VectorLanes::default();
+    let mut lights = LightChunk::<C>::new();
+    let mut bsdfs = BsdfValues::new();
+    let mut rays = ShadowChunk::new();
+    for start in (0..vertices.len()).step_by(CHUNK) {
+        let chunk = start..vertices.len().min(start + CHUNK);
+        sampler.fill(
+            &vertices.point[chunk.clone()],
+            Use::Light(depth),
+            &mut numbers,
         );
-        shadow.path.push(path);
-        shadow.contribution.push(contribution);
+        positions.load(vertices.position.slices(chunk.clone()));
+        lights.draw(engine, paths, vertices, chunk.clone(), &positions, &numbers);
+        normals.load(vertices.normal.slices(chunk.clone()));
+        bsdfs.evaluate(&vertices.bsdf[chunk.clone()], &normals, &lights.direction);
+        normals.load(vertices.geometric_normal.slices(chunk.clone()));
+        rays.aim(&positions, &normals, &lights);
+        rays.weigh(&lights.pdf, &bsdfs.pdf, engine.light_choice);
+
+        let mut kept = KeptLanes::none();
+        let mut contributions = [C::Spectrum::ZERO; CHUNK];
+        for (lane, i) in chunk.enumerate() {
+            let contribution = vertices.throughput[i]
+                * bsdfs.value[lane]
+                * lights.weight[lane]
+                * rays.weight[lane];
+            contributions[lane] = contribution;
+            kept.add_if(lane, !contribution.is_black());
+        }
+        rays.append(&kept, shadow);
+        shadow
+            .path
+            .extend(kept.iter().map(|lane| vertices.path[start + lane]));
+        shadow
+            .contribution
+            .extend(kept.iter().map(|lane| contributions[lane]));
     }
     shadow.rays.resize(shadow.path.len());
 }
 
-/// Unit direction and distance from the `origin` of a shadow ray to the light that was drawn from `position`.
-///
-/// The ray ends off the light's surface, as it starts off its own: a light that is curved, or that lights itself, would
-/// otherwise be in its own way where the ray grazes it.
-#[inline]
-fn towards<S>(position: Vec3, origin: Vec3, light: &LightSample<S>) -> (Vec3, f32) {
-    if light.distance == f32::INFINITY {
-        return (light.direction, light.distance);
+/// The shadow rays of a chunk of vertices, in world space.
+struct ShadowChunk {
+    origin: VectorLanes<CHUNK>,
+    direction: VectorLanes<CHUNK>,
+    far: [f32; CHUNK],
+    /// The MIS weight over the probability with which the emitter was chosen.
+    weight: [f32; CHUNK],
+}
+
+impl ShadowChunk {
+    fn new() -> Self {
+        Self {
+            origin: VectorLanes::default(),
+            direction: VectorLanes::default(),
+            far: [0.0; CHUNK],
+            weight: [0.0; CHUNK],
+        }
     }
-    let target = match &light.surface {
-        Some(point) => leave_surface(point.position, point.geometric_normal, -light.direction),
-        None => position + light.direction * light.distance,
-    };
-    let offset = target - origin;
-    let length = offset.length();
-    if length > 0.0 {
-        (offset / length, length)
-    } else {
-        (light.direction, 0.0)
+
+    /// From the vertices at `positions`, with unit geometric `normals`, to the light that was drawn for them.
+    ///
+    /// A ray ends off the light's surface, as it starts off its own: a light that is curved, or that lights itself, would
+    /// otherwise be in its own way where the ray grazes it.
+    #[inline(always)]
+    fn aim<C: Colour>(
+        &mut self,
+        positions: &VectorLanes<CHUNK>,
+        normals: &VectorLanes<CHUNK>,
+        lights: &LightChunk<C>,
+    ) {
+        for i in 0..CHUNK {
+            let direction = lights.direction.get(i);
+            let origin = leave_surface(positions.get(i), normals.get(i), direction);
+            let offset = lights.target.get(i) - origin;
+            let length = offset.length();
+            let is_near = (lights.distance[i] < f32::INFINITY) & (length > 0.0);
+            let reciprocal = 1.0 / length;
+            let choose = |near: f32, other: f32| if is_near { near } else { other };
+            self.direction.put(
+                i,
+                Vec3::new(
+                    choose(offset.x * reciprocal, direction.x),
+                    choose(offset.y * reciprocal, direction.y),
+                    choose(offset.z * reciprocal, direction.z),
+                ),
+            );
+            let end = if lights.distance[i] < f32::INFINITY {
+                length * SHADOW_END
+            } else {
+                f32::INFINITY
+            };
+            self.far[i] = end;
+            self.origin.put(i, origin);
+        }
+    }
+
+    /// Weighs light that was drawn with `light_pdf`, where the bsdf would have drawn its direction with `bsdf_pdf`.
+    #[inline(always)]
+    fn weigh(&mut self, light_pdf: &[f32; CHUNK], bsdf_pdf: &[f32; CHUNK], light_choice: f32) {
+        for i in 0..CHUNK {
+            let light_pdf = SolidAnglePdf(light_pdf[i]).chosen_with(light_choice);
+            let mis = power_heuristic(light_pdf, SolidAnglePdf(bsdf_pdf[i]));
+            self.weight[i] = mis / light_choice;
+        }
+    }
+
+    /// Appends the rays in the lanes `kept` to those of `shadow`.
+    #[inline(always)]
+    fn append<C: Colour>(&self, kept: &KeptLanes, shadow: &mut ShadowRays<C>) {
+        let start = shadow.path.len();
+        let rays = shadow.rays.as_mut();
+        let place = start..start + kept.len();
+        let columns = rays.origin.into_iter().chain(rays.direction);
+        for (column, lanes) in columns.zip(self.origin.0.iter().chain(&self.direction.0)) {
+            copy_kept(&mut column[place.clone()], lanes, kept);
+        }
+        rays.tnear[place.clone()].fill(0.0);
+        copy_kept(&mut rays.tfar[place], &self.far, kept);
     }
 }
 

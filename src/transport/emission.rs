@@ -6,8 +6,9 @@ use multiversion::multiversion;
 use super::batch::{CameraPaths, Segments, Vertices};
 use super::engine::Engine;
 use super::settings::DirectLight;
-use super::surface::{CHUNK, SurfaceChunk};
-use crate::sampling::{Frame, SolidAnglePdf, power_heuristic};
+use super::surface::SurfaceChunk;
+use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
+use crate::sampling::{SolidAnglePdf, power_heuristic};
 use crate::scene::{Emitter, Side};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -30,13 +31,18 @@ pub(super) fn arrive<C: Colour>(
     vertices.restart(segments.len());
     let hidden = camera_rays && engine.settings.hide_emitters;
     let mut surfaces = SurfaceChunk::default();
+    let mut sides = SideChunk::new();
     for start in (0..segments.len()).step_by(CHUNK) {
         let chunk = start..segments.len().min(start + CHUNK);
         surfaces.locate(engine, segments, chunk.clone());
-        for i in chunk {
+        sides.find(
+            segments.rays.directions().map(|axis| &axis[chunk.clone()]),
+            &surfaces.points.shading_normal,
+        );
+        let mut scattering = KeptLanes::none();
+        for (lane, i) in chunk.enumerate() {
             let path = segments.path[i];
             let wavelengths = &paths.wavelengths[path as usize];
-            let direction = Vec3::from(segments.rays.direction(i));
             let hit = segments.hits.geometry_id(i);
             let Some(shape) = engine.accelerator.shape(&engine.scene, hit) else {
                 if let Some(light) = engine.surroundings().filter(|_| !hidden) {
@@ -46,10 +52,11 @@ pub(super) fn arrive<C: Colour>(
                 }
                 continue;
             };
-            let point = surfaces.point(i - start);
             if let Some(Emitter::Area(light)) =
                 shape.emitter.map(|id| &engine.scene.emitters[id.index()])
             {
+                let point = surfaces.points.get(lane);
+                let direction = Vec3::from(segments.rays.direction(i));
                 let radiance = light.radiance::<C>(&point, -direction, wavelengths);
                 if !radiance.is_black() {
                     let origin = Vec3::from(segments.rays.origin(i));
@@ -61,22 +68,60 @@ pub(super) fn arrive<C: Colour>(
             if !scatters {
                 continue;
             }
-            let Some(side) = Side::seen_with(-direction.dot(point.shading_normal)) else {
+            let Some(side) = Side::seen_with(sides.cosine[lane]) else {
                 continue;
             };
             let material = &engine.scene.materials[shape.material.index()];
             let Some(bsdf) = material.bsdf::<C>(side, wavelengths) else {
                 continue;
             };
-            let frame = Frame::about(side.facing(point.shading_normal));
-            vertices.path.push(path);
-            vertices.throughput.push(segments.throughput[i]);
-            vertices.point.push(segments.point[i]);
-            vertices.position.push(point.position);
-            vertices.geometric_normal.push(point.geometric_normal);
-            vertices.outgoing.push(frame.to_local(-direction));
-            vertices.frame.push(frame);
+            scattering.add_if(lane, true);
             vertices.bsdf.push(bsdf);
+        }
+        let segment_of = |lane| start + lane;
+        let kept = scattering.iter().map(segment_of);
+        vertices.path.extend(kept.clone().map(|i| segments.path[i]));
+        vertices
+            .throughput
+            .extend(kept.clone().map(|i| segments.throughput[i]));
+        vertices.point.extend(kept.map(|i| segments.point[i]));
+        let points = &surfaces.points;
+        vertices.position.append(&points.position, &scattering);
+        vertices
+            .geometric_normal
+            .append(&points.geometric_normal, &scattering);
+        vertices.normal.append(&sides.normal, &scattering);
+    }
+}
+
+/// From which sides the segments of a chunk see their surfaces.
+struct SideChunk {
+    direction: VectorLanes<CHUNK>,
+    /// Between the direction to where the path comes from and the shading normal.
+    cosine: [f32; CHUNK],
+    /// The shading normal of the side that is seen.
+    normal: VectorLanes<CHUNK>,
+}
+
+impl SideChunk {
+    fn new() -> Self {
+        Self {
+            direction: VectorLanes::default(),
+            cosine: [0.0; CHUNK],
+            normal: VectorLanes::default(),
+        }
+    }
+
+    /// `directions` are those of at most [`CHUNK`] segments, in world space.
+    #[inline(always)]
+    fn find(&mut self, directions: [&[f32]; 3], shading_normals: &VectorLanes<CHUNK>) {
+        self.direction.load(directions);
+        for lane in 0..CHUNK {
+            let normal = shading_normals.get(lane);
+            let cosine = -self.direction.get(lane).dot(normal);
+            self.cosine[lane] = cosine;
+            self.normal
+                .put(lane, if cosine < 0.0 { -normal } else { normal });
         }
     }
 }

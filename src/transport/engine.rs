@@ -12,7 +12,7 @@ use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_
 use crate::embree::{Coherence, Version};
 use crate::film::{Accumulator, FilmTile, FilterSampler, PixelStatistics, TilePixels};
 use crate::sampling::{Sampler, SamplerKind, StreamKey};
-use crate::scene::{ConstantLight, Emitter, Projection, Scene};
+use crate::scene::{ConstantLight, Emitter, Parallelogram, Projection, Scene};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::{Offspring, Scope, Strategy};
 
@@ -29,6 +29,8 @@ pub struct Engine {
     pub(super) filter: FilterSampler,
     /// The probability with which next-event estimation chooses each emitter.
     pub(super) light_choice: f32,
+    /// The rectangle that an emitter is, by emitter, if it is one.
+    lamps: Vec<Option<Parallelogram>>,
     /// Which emitter surrounds the scene; looked up once, for rays that leave the scene ask for it.
     surroundings: Option<usize>,
 }
@@ -59,6 +61,11 @@ impl Engine {
                 .emitters
                 .iter()
                 .position(|emitter| matches!(emitter, Emitter::Constant(_))),
+            lamps: scene
+                .emitters
+                .iter()
+                .map(|emitter| emitter.parallelogram(&scene.shapes))
+                .collect(),
             light_choice: 1.0 / scene.emitters.len().max(1) as f32,
             scene,
             accelerator,
@@ -80,6 +87,12 @@ impl Engine {
     /// The version of the intersection layer's library.
     pub fn embree_version(&self) -> Version {
         self.accelerator.scene().device().version()
+    }
+
+    /// The rectangle that emitter number `emitter` is, if it is one.
+    #[inline(always)]
+    pub(super) fn lamp(&self, emitter: usize) -> Option<&Parallelogram> {
+        self.lamps[emitter].as_ref()
     }
 
     /// The light that surrounds the scene, if there is one.

@@ -19,6 +19,7 @@ mod emission;
 mod engine;
 mod hidden_emitters;
 mod intersect;
+mod light_chunk;
 mod offset;
 mod recorded_rays;
 mod scatter;

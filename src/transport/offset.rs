@@ -14,7 +14,7 @@ const INT_SCALE: f32 = 256.0;
 ///
 /// The distance is in units of the last place of each coordinate (Wächter and Binder 2019, "A Fast and Robust Method
 /// for Avoiding Self-Intersection"): it fits any scene scale.
-#[inline]
+#[inline(always)]
 pub(super) fn leave_surface(position: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     let outward = if normal.dot(direction) < 0.0 {
         -normal
@@ -28,7 +28,7 @@ pub(super) fn leave_surface(position: Vec3, normal: Vec3, direction: Vec3) -> Ve
     )
 }
 
-#[inline]
+#[inline(always)]
 fn offset_coordinate(position: f32, normal: f32) -> f32 {
     if position.abs() < ORIGIN {
         return position + FLOAT_SCALE * normal;

@@ -4,7 +4,9 @@ use multiversion::multiversion;
 
 use super::batch::{Segments, Vertices};
 use super::offset::leave_surface;
-use crate::sampling::{Sampler, Use};
+use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
+use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
+use crate::scene::BsdfSamples;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::Child;
 
@@ -22,30 +24,96 @@ pub(super) fn scatter<C: Colour>(
     segments: &mut Segments<C>,
 ) {
     segments.restart(children.len());
-    let mut elder_siblings = 0;
-    for (i, child) in children.iter().enumerate() {
-        let parent = child.parent as usize;
-        let has_elder = i > 0 && children[i - 1].parent == child.parent;
-        elder_siblings = if has_elder { elder_siblings + 1 } else { 0 };
-        let point = vertices.point[parent].branch(elder_siblings, depth);
-        let u = sampler.numbers(point, Use::Direction(depth));
-        let sample = vertices.bsdf[parent].sample(vertices.outgoing[parent], u);
-        let throughput = vertices.throughput[parent] * sample.weight * child.weight;
-        if throughput.is_black() {
-            continue;
+    let mut elders = ElderSiblings::default();
+    let mut points = [SequencePoint::default(); CHUNK];
+    let mut numbers = [[0.0; CHUNK]; 2];
+    let mut normals = VectorLanes::default();
+    let mut samples = BsdfSamples::new();
+    let mut origins = VectorLanes::default();
+    for children in children.chunks(CHUNK) {
+        for (lane, child) in children.iter().enumerate() {
+            let parent = child.parent as usize;
+            points[lane] = vertices.point[parent].branch(elders.before(child), depth);
+            normals.put(lane, vertices.normal.get(parent));
         }
-        let direction = vertices.frame[parent].to_world(sample.incident);
-        let normal = vertices.geometric_normal[parent];
-        let origin = leave_surface(vertices.position[parent], normal, direction);
-        segments.rays.set(
-            segments.len(),
-            origin.into(),
-            direction.into(),
-            0.0,
-            f32::INFINITY,
+        sampler.fill(
+            &points[..children.len()],
+            Use::Direction(depth),
+            &mut numbers,
         );
-        segments.push(vertices.path[parent], throughput, point, sample.pdf);
+        let parents = children.iter().map(|child| child.parent as usize);
+        let bsdfs = parents.clone().map(|parent| &vertices.bsdf[parent]);
+        samples.sample(bsdfs, &normals, &numbers);
+        for (lane, parent) in parents.enumerate() {
+            normals.put(lane, vertices.geometric_normal.get(parent));
+            origins.put(lane, vertices.position.get(parent));
+        }
+        for lane in 0..CHUNK {
+            let (position, normal) = (origins.get(lane), normals.get(lane));
+            let direction = samples.direction.get(lane);
+            origins.put(lane, leave_surface(position, normal, direction));
+        }
+
+        let mut kept = KeptLanes::none();
+        let mut throughputs = [C::Spectrum::ZERO; CHUNK];
+        for (lane, child) in children.iter().enumerate() {
+            let throughput =
+                vertices.throughput[child.parent as usize] * samples.weight[lane] * child.weight;
+            throughputs[lane] = throughput;
+            kept.add_if(lane, !throughput.is_black());
+        }
+        append_rays(&kept, &origins, &samples.direction, segments);
+        let lanes = kept.iter();
+        let parent = |lane: usize| children[lane].parent as usize;
+        segments
+            .path
+            .extend(lanes.clone().map(|lane| vertices.path[parent(lane)]));
+        segments
+            .throughput
+            .extend(lanes.clone().map(|lane| throughputs[lane]));
+        segments
+            .point
+            .extend(lanes.clone().map(|lane| points[lane]));
+        segments
+            .direction_pdf
+            .extend(lanes.map(|lane| SolidAnglePdf(samples.pdf[lane])));
     }
     let count = segments.len();
     segments.rays.resize(count);
+}
+
+/// Counts siblings, which stand side by side.
+#[derive(Default)]
+struct ElderSiblings {
+    last: Option<Child>,
+    count: u32,
+}
+
+impl ElderSiblings {
+    /// How many siblings came before `child`, the one that follows the last that was asked for.
+    #[inline(always)]
+    fn before(&mut self, child: &Child) -> u32 {
+        let is_sibling = self.last.is_some_and(|last| last.parent == child.parent);
+        self.count = if is_sibling { self.count + 1 } else { 0 };
+        self.last = Some(*child);
+        self.count
+    }
+}
+
+/// Appends the rays in the lanes `kept`, in world space, to those of `segments`.
+#[inline(always)]
+fn append_rays<C: Colour>(
+    kept: &KeptLanes,
+    origins: &VectorLanes<CHUNK>,
+    directions: &VectorLanes<CHUNK>,
+    segments: &mut Segments<C>,
+) {
+    let place = segments.len()..segments.len() + kept.len();
+    let rays = segments.rays.as_mut();
+    let columns = rays.origin.into_iter().chain(rays.direction);
+    for (column, lanes) in columns.zip(origins.0.iter().chain(&directions.0)) {
+        copy_kept(&mut column[place.clone()], lanes, kept);
+    }
+    rays.tnear[place.clone()].fill(0.0);
+    rays.tfar[place].fill(f32::INFINITY);
 }

@@ -4,11 +4,9 @@ use std::ops::Range;
 
 use super::batch::Segments;
 use super::engine::Engine;
-use crate::scene::{CornerLanes, Geometry, HitCoordinates, SurfaceLanes, SurfacePoint};
+use crate::lanes::CHUNK;
+use crate::scene::{CornerLanes, Geometry, HitCoordinates, SurfaceLanes};
 use crate::spectrum::Colour;
-
-/// Hits whose surface points are found together: all of their memory fits the first-level cache.
-pub(super) const CHUNK: usize = 64;
 
 /// The surface points of a chunk of hits.
 ///
@@ -18,7 +16,8 @@ pub(super) const CHUNK: usize = 64;
 pub(super) struct SurfaceChunk {
     indices: [[u32; 3]; CHUNK],
     corners: CornerLanes<CHUNK>,
-    points: SurfaceLanes<CHUNK>,
+    /// Those of misses mean nothing.
+    pub points: SurfaceLanes<CHUNK>,
 }
 
 impl Default for SurfaceChunk {
@@ -32,12 +31,6 @@ impl Default for SurfaceChunk {
 }
 
 impl SurfaceChunk {
-    /// The point of the hit at `lane` of the chunk last [located](Self::locate). That of a miss means nothing.
-    #[inline(always)]
-    pub fn point(&self, lane: usize) -> SurfacePoint {
-        self.points.get(lane)
-    }
-
     /// Finds the surface points of the segments `chunk`, which are at most [`CHUNK`].
     #[inline(always)]
     pub fn locate<C: Colour>(

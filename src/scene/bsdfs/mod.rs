@@ -6,9 +6,11 @@
 //! Directions are unit vectors in the local shading frame whose z axis is the normal of the side that was hit; both
 //! point away from the surface. `outgoing` goes to where the path comes from, `incident` to where it goes on.
 
+mod chunk;
 mod diffuse;
 mod twosided;
 
+pub(crate) use chunk::{BsdfSamples, BsdfValues};
 pub use diffuse::{Diffuse, DiffuseMaterial};
 
 use glam::Vec3;
@@ -124,15 +126,6 @@ impl Side {
             Some(Self::Back)
         } else {
             None
-        }
-    }
-
-    /// A vector of the front's normal direction as this side sees it.
-    #[inline]
-    pub fn facing(self, normal: Vec3) -> Vec3 {
-        match self {
-            Self::Front => normal,
-            Self::Back => -normal,
         }
     }
 }

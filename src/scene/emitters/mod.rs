@@ -11,7 +11,7 @@ pub use point::PointLight;
 use glam::Vec3;
 
 use super::error::SceneError;
-use super::shapes::SurfacePoint;
+use super::shapes::{Parallelogram, SurfacePoint};
 use super::xml::Object;
 use super::{Shape, ShapeId};
 use crate::sampling::SolidAnglePdf;
@@ -80,6 +80,14 @@ impl Emitter {
             Self::Area(light) => light.sample::<C>(shapes, reference, wavelengths, u),
             Self::Point(light) => light.sample::<C>(reference, wavelengths),
             Self::Constant(light) => Some(light.sample::<C>(wavelengths, u)),
+        }
+    }
+
+    /// The rectangle (or another parallelogram) that it is, if it is one.
+    pub(crate) fn parallelogram(&self, shapes: &[Shape]) -> Option<Parallelogram> {
+        match self {
+            Self::Area(light) => shapes[light.shape.index()].geometry.parallelogram(),
+            Self::Point(_) | Self::Constant(_) => None,
         }
     }
 

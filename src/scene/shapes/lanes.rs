@@ -4,9 +4,7 @@
 use glam::Vec3;
 
 use super::SurfacePoint;
-
-/// `N` vectors: all x, all y, all z.
-pub(crate) type VectorLanes<const N: usize> = [[f32; N]; 3];
+use crate::lanes::VectorLanes;
 
 /// What is stored at the three vertices of `N` triangles, in world space.
 #[derive(Clone, Debug)]
@@ -21,16 +19,16 @@ pub(crate) struct CornerLanes<const N: usize> {
 /// `N` points of surfaces; see [`SurfacePoint`].
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceLanes<const N: usize> {
-    position: VectorLanes<N>,
-    geometric_normal: VectorLanes<N>,
-    shading_normal: VectorLanes<N>,
+    pub position: VectorLanes<N>,
+    pub geometric_normal: VectorLanes<N>,
+    pub shading_normal: VectorLanes<N>,
 }
 
 impl<const N: usize> Default for CornerLanes<N> {
     fn default() -> Self {
         Self {
-            positions: [[[0.0; N]; 3]; 3],
-            normals: [[[0.0; N]; 3]; 3],
+            positions: [VectorLanes::default(); 3],
+            normals: [VectorLanes::default(); 3],
             orientation: [1.0; N],
         }
     }
@@ -42,8 +40,8 @@ impl<const N: usize> CornerLanes<N> {
     #[inline(always)]
     pub fn set(&mut self, lane: usize, positions: [Vec3; 3], normals: [Vec3; 3], flipped: bool) {
         for corner in 0..3 {
-            put(&mut self.positions[corner], lane, positions[corner]);
-            put(&mut self.normals[corner], lane, normals[corner]);
+            self.positions[corner].put(lane, positions[corner]);
+            self.normals[corner].put(lane, normals[corner]);
         }
         self.orientation[lane] = if flipped { -1.0 } else { 1.0 };
     }
@@ -56,16 +54,16 @@ impl<const N: usize> CornerLanes<N> {
     #[inline(always)]
     pub fn interpolate(&self, u: &[f32; N], v: &[f32; N], points: &mut SurfaceLanes<N>) {
         for i in 0..N {
-            let [a, b, c] = [0, 1, 2].map(|corner| get(&self.positions[corner], i));
+            let [a, b, c] = [0, 1, 2].map(|corner| self.positions[corner].get(i));
             let (ab, ac) = (b - a, c - a);
             let orientation = self.orientation[i];
             let geometric = unit_or(ab.cross(ac), Vec3::ZERO);
-            let [na, nb, nc] = [0, 1, 2].map(|corner| get(&self.normals[corner], i));
+            let [na, nb, nc] = [0, 1, 2].map(|corner| self.normals[corner].get(i));
             // Opposite normals can cancel out; then the true surface decides.
             let shading = unit_or(na + u[i] * (nb - na) + v[i] * (nc - na), geometric);
-            put(&mut points.position, i, a + u[i] * ab + v[i] * ac);
-            put(&mut points.geometric_normal, i, orientation * geometric);
-            put(&mut points.shading_normal, i, orientation * shading);
+            points.position.put(i, a + u[i] * ab + v[i] * ac);
+            points.geometric_normal.put(i, orientation * geometric);
+            points.shading_normal.put(i, orientation * shading);
         }
     }
 }
@@ -73,9 +71,9 @@ impl<const N: usize> CornerLanes<N> {
 impl<const N: usize> Default for SurfaceLanes<N> {
     fn default() -> Self {
         Self {
-            position: [[0.0; N]; 3],
-            geometric_normal: [[0.0; N]; 3],
-            shading_normal: [[0.0; N]; 3],
+            position: VectorLanes::default(),
+            geometric_normal: VectorLanes::default(),
+            shading_normal: VectorLanes::default(),
         }
     }
 }
@@ -85,31 +83,19 @@ impl<const N: usize> SurfaceLanes<N> {
     #[inline(always)]
     pub fn get(&self, lane: usize) -> SurfacePoint {
         SurfacePoint {
-            position: get(&self.position, lane),
-            geometric_normal: get(&self.geometric_normal, lane),
-            shading_normal: get(&self.shading_normal, lane),
+            position: self.position.get(lane),
+            geometric_normal: self.geometric_normal.get(lane),
+            shading_normal: self.shading_normal.get(lane),
         }
     }
 
     /// Puts a point into its lane.
     #[inline]
     pub fn set(&mut self, lane: usize, point: &SurfacePoint) {
-        put(&mut self.position, lane, point.position);
-        put(&mut self.geometric_normal, lane, point.geometric_normal);
-        put(&mut self.shading_normal, lane, point.shading_normal);
+        self.position.put(lane, point.position);
+        self.geometric_normal.put(lane, point.geometric_normal);
+        self.shading_normal.put(lane, point.shading_normal);
     }
-}
-
-#[inline(always)]
-fn get<const N: usize>(lanes: &VectorLanes<N>, lane: usize) -> Vec3 {
-    Vec3::new(lanes[0][lane], lanes[1][lane], lanes[2][lane])
-}
-
-#[inline(always)]
-fn put<const N: usize>(lanes: &mut VectorLanes<N>, lane: usize, vector: Vec3) {
-    lanes[0][lane] = vector.x;
-    lanes[1][lane] = vector.y;
-    lanes[2][lane] = vector.z;
 }
 
 /// `vector` with length 1, or `otherwise` where it has none: chosen without a branch.

@@ -11,11 +11,20 @@ pub(super) enum MeshSampling {
     /// By triangle, then within the triangle.
     ByTriangle(AliasTable),
     /// The two triangles of a rectangle at once: fewer steps, and the square keeps its neighbourhoods.
-    Parallelogram {
-        corner: SurfacePoint,
-        first_edge: Vec3,
-        second_edge: Vec3,
-    },
+    Parallelogram(Parallelogram),
+}
+
+/// A flat quadrangle with parallel sides, in world space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parallelogram {
+    /// The corner at which both edges begin.
+    pub corner: SurfacePoint,
+    /// From the corner to one neighbour.
+    pub first_edge: Vec3,
+    /// From the corner to the other.
+    pub second_edge: Vec3,
+    /// In squared scene units, positive.
+    pub area: f32,
 }
 
 impl MeshSampling {
@@ -40,10 +49,13 @@ impl MeshSampling {
         let (first_edge, second_edge) = (b - a, d - a);
         let tolerance = 1e-6 * (first_edge.length() + second_edge.length());
         let closes = (first_edge + second_edge - (c - a)).length() <= tolerance;
-        closes.then(|| Self::Parallelogram {
-            corner: mesh.point(0, 0.0, 0.0),
-            first_edge,
-            second_edge,
+        closes.then(|| {
+            Self::Parallelogram(Parallelogram {
+                corner: mesh.point(0, 0.0, 0.0),
+                first_edge,
+                second_edge,
+                area: mesh.area(),
+            })
         })
     }
 
@@ -56,11 +68,12 @@ impl MeshSampling {
                 let [v, w] = warp::triangle([chosen.remainder, u[1]]);
                 mesh.point(chosen.index as u32, v, w)
             }
-            Self::Parallelogram {
+            Self::Parallelogram(Parallelogram {
                 corner,
                 first_edge,
                 second_edge,
-            } => SurfacePoint {
+                ..
+            }) => SurfacePoint {
                 position: corner.position + u[0] * first_edge + u[1] * second_edge,
                 ..corner
             },

@@ -16,6 +16,7 @@ mod triangles;
 pub use cylinder::{Cylinder, CylinderHit};
 pub use disk::{Disk, DiskHit};
 pub(crate) use lanes::{CornerLanes, SurfaceLanes};
+pub(crate) use mesh_sampling::Parallelogram;
 pub use sphere::Sphere;
 pub use triangles::{TriangleAttributes, Triangles};
 
@@ -226,6 +227,14 @@ impl Geometry {
             Self::Sphere(shape) => shape.sample(reference, u),
             Self::Disk(shape) => shape.sample(reference, u),
             Self::Cylinder(shape) => shape.sample(reference, u),
+        }
+    }
+
+    /// The parallelogram that it is, if it is one that can be sampled.
+    pub(crate) fn parallelogram(&self) -> Option<Parallelogram> {
+        match self {
+            Self::Triangles(mesh) => mesh.parallelogram(),
+            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) => None,
         }
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use super::lanes::{CornerLanes, SurfaceLanes};
-use super::mesh_sampling::MeshSampling;
+use super::mesh_sampling::{MeshSampling, Parallelogram};
 use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfacePoint};
 use crate::embree::{IndexBuffer, VertexBuffer};
 use crate::scene::error::SceneError;
@@ -122,6 +122,14 @@ impl Triangles {
     pub fn prepare_sampling(&mut self) -> bool {
         self.sampling = MeshSampling::new(self);
         self.sampling.is_some()
+    }
+
+    /// The parallelogram that it is, if it is one and was made ready for sampling.
+    pub(super) fn parallelogram(&self) -> Option<Parallelogram> {
+        match &self.sampling {
+            Some(MeshSampling::Parallelogram(parallelogram)) => Some(*parallelogram),
+            Some(MeshSampling::ByTriangle(_)) | None => None,
+        }
     }
 
     /// The vertex positions, in world space.

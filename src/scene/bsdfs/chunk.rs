@@ -1,0 +1,89 @@
+//! Bsdfs of many vertices at once: a loop over lanes for what has to do with directions, and one over vertices for
+//! spectra, which are lanes themselves.
+//!
+//! Here directions are in world space: the frames of diffuse surfaces need not be stored.
+
+use super::Bsdf;
+use crate::lanes::{CHUNK, VectorLanes};
+use crate::sampling::{Frame, warp};
+use crate::spectrum::SpectrumArithmetic;
+
+/// A [`BsdfValue`](super::BsdfValue) in each lane.
+pub(crate) struct BsdfValues<S> {
+    /// Bsdf times cosine of the incident direction, in 1/sr.
+    pub value: [S; CHUNK],
+    /// The density, over solid angle, with which the incident direction is drawn.
+    pub pdf: [f32; CHUNK],
+}
+
+/// A [`BsdfSample`](super::BsdfSample) in each lane.
+pub(crate) struct BsdfSamples<S> {
+    /// The incident direction: unit, in world space.
+    pub direction: VectorLanes<CHUNK>,
+    /// Bsdf times cosine over density.
+    pub weight: [S; CHUNK],
+    /// The density of the direction over solid angle.
+    pub pdf: [f32; CHUNK],
+}
+
+impl<S: SpectrumArithmetic> BsdfValues<S> {
+    /// Black everywhere.
+    pub fn new() -> Self {
+        Self {
+            value: [S::ZERO; CHUNK],
+            pdf: [0.0; CHUNK],
+        }
+    }
+
+    /// Evaluates `bsdfs`, at most [`CHUNK`], each with the unit shading normal of its side and a unit incident direction,
+    /// both in world space.
+    #[inline(always)]
+    pub fn evaluate(
+        &mut self,
+        bsdfs: &[Bsdf<S>],
+        normals: &VectorLanes<CHUNK>,
+        directions: &VectorLanes<CHUNK>,
+    ) {
+        for lane in 0..CHUNK {
+            let cosine = normals.get(lane).dot(directions.get(lane));
+            self.pdf[lane] = warp::cosine_hemisphere_pdf(cosine).0;
+        }
+        for ((value, bsdf), pdf) in self.value.iter_mut().zip(bsdfs).zip(self.pdf) {
+            let Bsdf::Diffuse(diffuse) = bsdf;
+            // The density is the cosine over pi, too.
+            *value = diffuse.albedo() * pdf;
+        }
+    }
+}
+
+impl<S: SpectrumArithmetic> BsdfSamples<S> {
+    /// Black everywhere.
+    pub fn new() -> Self {
+        Self {
+            direction: VectorLanes::default(),
+            weight: [S::ZERO; CHUNK],
+            pdf: [0.0; CHUNK],
+        }
+    }
+
+    /// Draws an incident direction for each of `bsdfs`, at most [`CHUNK`], with the unit shading normals of their sides in
+    /// world space, from the uniform numbers `u` in [0, 1).
+    #[inline(always)]
+    pub fn sample<'a>(
+        &mut self,
+        bsdfs: impl Iterator<Item = &'a Bsdf<S>>,
+        normals: &VectorLanes<CHUNK>,
+        u: &[[f32; CHUNK]; 2],
+    ) {
+        for (lane, (&u, &v)) in u[0].iter().zip(&u[1]).enumerate() {
+            let local = warp::cosine_hemisphere([u, v]);
+            let frame = Frame::about(normals.get(lane));
+            self.direction.put(lane, frame.to_world(local));
+            self.pdf[lane] = warp::cosine_hemisphere_pdf(local.z).0;
+        }
+        for (weight, bsdf) in self.weight.iter_mut().zip(bsdfs) {
+            let Bsdf::Diffuse(diffuse) = bsdf;
+            *weight = diffuse.albedo();
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Light drawn for many vertices at once.
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use super::batch::{CameraPaths, Vertices};
+use super::engine::Engine;
+use super::offset::leave_surface;
+use crate::lanes::{CHUNK, VectorLanes};
+use crate::scene::{Emitter, LightSample, Parallelogram};
+use crate::spectrum::{Colour, SpectrumArithmetic};
+
+/// Light drawn for a chunk of vertices, one lane each.
+///
+/// Lamps are rectangles more often than anything else: those are drawn in one loop over lanes, all others one by one.
+pub(super) struct LightChunk<C: Colour> {
+    /// The emitter chosen.
+    emitter: [usize; CHUNK],
+    lamps: LampLanes,
+    /// Unit direction from the vertex to the light, in world space.
+    pub direction: VectorLanes<CHUNK>,
+    /// Distance in scene units; infinite for the surroundings.
+    pub distance: [f32; CHUNK],
+    /// Where shadow rays end, off the light's surface: it is not to be in its own way. Without meaning at infinite distance.
+    pub target: VectorLanes<CHUNK>,
+    /// The density of the direction over solid angle; infinite where only next-event estimation can find the light.
+    pub pdf: [f32; CHUNK],
+    /// Radiance over density, or what stands for it with a light that is a point.
+    pub weight: [C::Spectrum; CHUNK],
+}
+
+/// The rectangle that was chosen in each lane.
+struct LampLanes {
+    /// Which emitter it is.
+    emitter: [Option<usize>; CHUNK],
+    corner: VectorLanes<CHUNK>,
+    first_edge: VectorLanes<CHUNK>,
+    second_edge: VectorLanes<CHUNK>,
+    normal: VectorLanes<CHUNK>,
+    area: [f32; CHUNK],
+    /// 1 / density where light leaves towards the vertex, otherwise 0.
+    weight: [f32; CHUNK],
+}
+
+impl LampLanes {
+    fn new() -> Self {
+        Self {
+            emitter: [None; CHUNK],
+            corner: VectorLanes::default(),
+            first_edge: VectorLanes::default(),
+            second_edge: VectorLanes::default(),
+            normal: VectorLanes::default(),
+            area: [1.0; CHUNK],
+            weight: [0.0; CHUNK],
+        }
+    }
+
+    /// Puts a lamp into its lane, where it often is already.
+    #[inline(always)]
+    fn put(&mut self, lane: usize, emitter: usize, lamp: &Parallelogram) {
+        if self.emitter[lane] == Some(emitter) {
+            return;
+        }
+        self.emitter[lane] = Some(emitter);
+        self.corner.put(lane, lamp.corner.position);
+        self.first_edge.put(lane, lamp.first_edge);
+        self.second_edge.put(lane, lamp.second_edge);
+        self.normal.put(lane, lamp.corner.geometric_normal);
+        self.area[lane] = lamp.area;
+    }
+}
+
+impl<C: Colour> LightChunk<C> {
+    pub fn new() -> Self {
+        Self {
+            emitter: [0; CHUNK],
+            lamps: LampLanes::new(),
+            direction: VectorLanes::default(),
+            distance: [0.0; CHUNK],
+            target: VectorLanes::default(),
+            pdf: [0.0; CHUNK],
+            weight: [C::Spectrum::ZERO; CHUNK],
+        }
+    }
+
+    /// Draws light for the vertices `chunk`, whose positions are `positions`, from three uniform numbers in [0, 1) each:
+    /// one chooses the emitter, two a point of it.
+    #[inline(always)]
+    pub fn draw(
+        &mut self,
+        engine: &Engine,
+        paths: &CameraPaths<C>,
+        vertices: &Vertices<C>,
+        chunk: Range<usize>,
+        positions: &VectorLanes<CHUNK>,
+        numbers: &[[f32; CHUNK]; 3],
+    ) {
+        let emitters = &engine.scene.emitters;
+        let [choice, u, v] = numbers;
+        for (lane, choice) in choice[..chunk.len()].iter().enumerate() {
+            let chosen = (choice * emitters.len() as f32) as usize;
+            self.emitter[lane] = chosen.min(emitters.len() - 1);
+            if let Some(lamp) = engine.lamp(self.emitter[lane]) {
+                self.lamps.put(lane, self.emitter[lane], lamp);
+            }
+        }
+        self.draw_lamps(positions, u, v);
+        for (lane, i) in chunk.enumerate() {
+            let wavelengths = &paths.wavelengths[vertices.path[i] as usize];
+            let emitter = &emitters[self.emitter[lane]];
+            match emitter {
+                Emitter::Area(light) if engine.lamp(self.emitter[lane]).is_some() => {
+                    let radiance = C::evaluate(&light.radiance, wavelengths);
+                    self.weight[lane] = radiance * self.lamps.weight[lane];
+                }
+                _ => {
+                    let (position, u) = (positions.get(lane), [u[lane], v[lane]]);
+                    let shapes = &engine.scene.shapes;
+                    let sample = emitter.sample::<C>(shapes, position, wavelengths, u);
+                    self.put(lane, position, sample.as_ref());
+                }
+            }
+        }
+    }
+
+    /// Draws a point of the rectangle in every lane.
+    #[inline(always)]
+    fn draw_lamps(&mut self, positions: &VectorLanes<CHUNK>, u: &[f32; CHUNK], v: &[f32; CHUNK]) {
+        let lamps = &mut self.lamps;
+        for i in 0..CHUNK {
+            let normal = lamps.normal.get(i);
+            let point = lamps.corner.get(i)
+                + u[i] * lamps.first_edge.get(i)
+                + v[i] * lamps.second_edge.get(i);
+            let offset = point - positions.get(i);
+            let distance = offset.length();
+            let reciprocal = if distance > 0.0 { 1.0 / distance } else { 0.0 };
+            let direction = offset * reciprocal;
+            let cosine = -direction.dot(normal);
+            let pdf = distance * distance / (lamps.area[i] * cosine);
+            // A point seen from behind or edge-on, or one that coincides with the vertex, sends nothing.
+            let sends = (pdf > 0.0) & (pdf < f32::INFINITY);
+            lamps.weight[i] = if sends { 1.0 / pdf } else { 0.0 };
+            self.pdf[i] = if sends { pdf } else { 1.0 };
+            self.distance[i] = distance;
+            self.direction.put(i, direction);
+            self.target.put(i, leave_surface(point, normal, -direction));
+        }
+    }
+
+    /// Puts what was drawn from `position` into its lane.
+    fn put(&mut self, lane: usize, position: Vec3, sample: Option<&LightSample<C::Spectrum>>) {
+        let Some(light) = sample else {
+            self.weight[lane] = C::Spectrum::ZERO;
+            self.pdf[lane] = 1.0;
+            return;
+        };
+        let target = match &light.surface {
+            Some(point) => leave_surface(point.position, point.geometric_normal, -light.direction),
+            None => position + light.direction * light.distance,
+        };
+        self.direction.put(lane, light.direction);
+        self.distance[lane] = light.distance;
+        self.target.put(lane, target);
+        self.pdf[lane] = light.pdf.map_or(f32::INFINITY, |pdf| pdf.0);
+        self.weight[lane] = light.weight;
+    }
+}
