@@ -14,7 +14,7 @@ pub struct PaddedBuffer<T> {
     padded: Vec<[T; 3]>,
 }
 
-/// Vertex positions.
+/// Vertex positions, or another vector of every vertex.
 pub type VertexBuffer = PaddedBuffer<f32>;
 
 /// The three vertices of each triangle.
@@ -25,6 +25,21 @@ impl<T: Copy + Default> PaddedBuffer<T> {
     pub fn new(mut triples: Vec<[T; 3]>) -> Self {
         triples.push([T::default(); 3]);
         Self { padded: triples }
+    }
+}
+
+impl<T> PaddedBuffer<T> {
+    /// Says that triple `index` will be wanted soon, so that the processor need not wait for it then. Any index may be given.
+    #[inline(always)]
+    pub fn prefetch(&self, index: usize) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+            // SAFETY: this is a hint; it reads nothing, and no address is wrong.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(self.padded.as_ptr().wrapping_add(index).cast()) }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = index;
     }
 }
 

@@ -11,8 +11,8 @@ use crate::spectrum::Colour;
 /// The surface points of a chunk of hits.
 ///
 /// Vertices lie scattered in memory, and a loop that fetched and used them hit by hit would wait for each in turn. So a
-/// chunk is taken in steps, indices, vertices, arithmetic: the fetches of a step do not depend on each other, and the
-/// processor overlaps them; the arithmetic is one loop over lanes.
+/// chunk is taken in steps, indices, vertices, arithmetic: what a step needs is announced a step before, and the processor
+/// fetches it meanwhile; the arithmetic is one loop over lanes.
 pub(super) struct SurfaceChunk {
     indices: [[u32; 3]; CHUNK],
     corners: CornerLanes<CHUNK>,
@@ -47,11 +47,16 @@ impl SurfaceChunk {
         let mut has_quadrics = false;
         for (lane, (&geometry, &primitive)) in geometries.iter().zip(primitives).enumerate() {
             match geometry_of(engine, geometry) {
-                Some(Geometry::Triangles(mesh)) => self.indices[lane] = mesh.corners(primitive),
+                Some(Geometry::Triangles(mesh)) => {
+                    let corners = mesh.corners(primitive);
+                    mesh.prefetch(corners);
+                    self.indices[lane] = corners;
+                }
                 Some(_) => has_quadrics = true,
                 None => {}
             }
         }
+        prefetch_corners(engine, segments, chunk.end..chunk.end + CHUNK);
         for (lane, &geometry) in geometries.iter().enumerate() {
             if let Some(Geometry::Triangles(mesh)) = geometry_of(engine, geometry) {
                 mesh.fetch(self.indices[lane], &mut self.corners, lane);
@@ -84,6 +89,19 @@ impl SurfaceChunk {
                 });
                 self.points.set(lane, &point);
             }
+        }
+    }
+}
+
+/// Says that the triangles which the segments `next` met will be asked for soon.
+#[inline(always)]
+fn prefetch_corners<C: Colour>(engine: &Engine, segments: &Segments<C>, next: Range<usize>) {
+    let next = next.start..next.end.min(segments.len());
+    let geometries = &segments.hits.geometry_ids()[next.clone()];
+    let primitives = &segments.hits.primitive_ids()[next];
+    for (&geometry, &primitive) in geometries.iter().zip(primitives) {
+        if let Some(Geometry::Triangles(mesh)) = geometry_of(engine, geometry) {
+            mesh.prefetch_corners(primitive);
         }
     }
 }

@@ -27,7 +27,7 @@ pub struct Triangles {
 #[derive(Clone, Debug, Default)]
 pub struct TriangleAttributes {
     /// Unit vertex normals in world space; without them the mesh is shaded flat.
-    pub normals: Option<Vec<Vec3>>,
+    pub normals: Option<VertexBuffer>,
     /// Whether the clockwise side of the triangles is the outer one.
     pub flip_normals: bool,
 }
@@ -89,7 +89,9 @@ impl Triangles {
             None => None,
         };
         let attributes = TriangleAttributes {
-            normals: normals.filter(|normals| !are_flat(&mesh, normals)),
+            normals: normals
+                .filter(|normals| !are_flat(&mesh, normals))
+                .map(|normals| VertexBuffer::new(normals.into_iter().map(Vec3::into).collect())),
             flip_normals: placement.flip_normals,
         };
         let positions = Arc::new(VertexBuffer::new(mesh.positions));
@@ -169,6 +171,23 @@ impl Triangles {
         self.indices[triangle as usize]
     }
 
+    /// Says that [`Self::corners`] of a triangle will be asked for soon.
+    #[inline(always)]
+    pub(crate) fn prefetch_corners(&self, triangle: u32) {
+        self.indices.prefetch(triangle as usize);
+    }
+
+    /// Says that [`Self::fetch`] will be asked for soon.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, corners: [u32; 3]) {
+        for corner in corners {
+            self.positions.prefetch(corner as usize);
+            if let Some(normals) = &self.attributes.normals {
+                normals.prefetch(corner as usize);
+            }
+        }
+    }
+
     /// Puts what is stored at the vertices of a triangle into a lane.
     #[inline(always)]
     pub(crate) fn fetch<const N: usize>(
@@ -180,7 +199,7 @@ impl Triangles {
         let corners = corners.map(|i| i as usize);
         let positions = &**self.positions;
         let normals = match &self.attributes.normals {
-            Some(normals) => corners.map(|i| normals[i]),
+            Some(normals) => corners.map(|i| Vec3::from(normals[i])),
             None => [Vec3::ZERO; 3],
         };
         lanes.set(
