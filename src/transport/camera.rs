@@ -6,7 +6,8 @@ use multiversion::multiversion;
 use super::batch::{CameraPaths, Segments};
 use super::engine::{Engine, TileJob};
 use crate::film::FilmTile;
-use crate::sampling::{Sampler, SolidAnglePdf, Use};
+use crate::lanes::CHUNK;
+use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Starts `job.samples` paths for every pixel of the tile, pixel by pixel.
@@ -27,36 +28,60 @@ pub(super) fn start<C: Colour>(
     let count = tile.pixels.count() * job.samples as usize;
     paths.restart(count);
     segments.restart(count);
-    for pixel in 0..tile.pixels.count() {
-        let (x, y) = tile.position(pixel);
-        let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-        for index in 0..job.samples {
-            let point = sampler.point(pixel as u32, job.first_sample + u64::from(index));
-            let [film_u, film_v, wavelength_u] = if C::RANDOM_NUMBERS > 0 {
-                sampler.numbers(point, Use::Camera)
-            } else {
-                let [u, v] = sampler.numbers(point, Use::Camera);
-                [u, v, 0.0]
-            };
-            let sample = engine.filter.sample(x, y, [film_u, film_v]);
-            let index = paths.radiance.len();
-            paths.wavelengths.push(C::sample_wavelengths(wavelength_u));
-            paths.radiance.push(C::Spectrum::ZERO);
-            paths.filter_weight.push(sample.weight);
-            let ray = engine.projection.ray(centre + sample.offset);
-            segments.push(
-                index as u32,
-                C::Spectrum::ONE,
-                point,
-                SolidAnglePdf(f32::INFINITY),
-            );
+    let mut points = [SequencePoint::default(); CHUNK];
+    let mut numbers = [[0.0; CHUNK]; 3];
+    let (mut pixel, mut sample) = (0, 0);
+    for start in (0..count).step_by(CHUNK) {
+        let chunk = start..count.min(start + CHUNK);
+        let (first_pixel, first_sample) = (pixel, sample);
+        for point in &mut points[..chunk.len()] {
+            *point = sampler.point(pixel, job.first_sample + u64::from(sample));
+            advance(&mut pixel, &mut sample, job.samples);
+        }
+        let points = &points[..chunk.len()];
+        if C::RANDOM_NUMBERS > 0 {
+            sampler.fill(points, Use::Camera, numbers.each_mut());
+        } else {
+            let [u, v, _] = &mut numbers;
+            sampler.fill(points, Use::Camera, [u, v]);
+        }
+        let [film_u, film_v, wavelength_u] = &numbers;
+        let wavelengths = wavelength_u[..chunk.len()].iter();
+        paths
+            .wavelengths
+            .extend(wavelengths.map(|&u| C::sample_wavelengths(u)));
+        (pixel, sample) = (first_pixel, first_sample);
+        for (lane, path) in chunk.enumerate() {
+            let (x, y) = tile.position(pixel as usize);
+            advance(&mut pixel, &mut sample, job.samples);
+            let film = engine.filter.sample(x, y, [film_u[lane], film_v[lane]]);
+            paths.filter_weight.push(film.weight);
+            let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+            let ray = engine.projection.ray(centre + film.offset);
             segments.rays.set(
-                index,
+                path,
                 ray.origin.into(),
                 ray.direction.into(),
                 ray.near,
                 ray.far,
             );
+            segments.push(
+                path as u32,
+                C::Spectrum::ONE,
+                points[lane],
+                SolidAnglePdf(f32::INFINITY),
+            );
         }
+    }
+    paths.radiance.resize(count, C::Spectrum::ZERO);
+}
+
+/// Goes on to the next of the `samples` of a pixel, or to the first of the next pixel.
+#[inline(always)]
+fn advance(pixel: &mut u32, sample: &mut u32, samples: u32) {
+    *sample += 1;
+    if *sample == samples {
+        *sample = 0;
+        *pixel += 1;
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn sample_lights<C: Colour>(
         sampler.fill(
             &vertices.point[chunk.clone()],
             Use::Light(depth),
-            &mut numbers,
+            numbers.each_mut(),
         );
         positions.load(vertices.position.slices(chunk.clone()));
         lights.draw(engine, paths, vertices, chunk.clone(), &positions, &numbers);

@@ -16,7 +16,7 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 /// Lamps are rectangles more often than anything else: those are drawn in one loop over lanes, all others one by one.
 pub(super) struct LightChunk<C: Colour> {
     /// The emitter chosen.
-    emitter: [usize; CHUNK],
+    emitter: [u32; CHUNK],
     lamps: LampLanes,
     /// Unit direction from the vertex to the light, in world space.
     pub direction: VectorLanes<CHUNK>,
@@ -30,10 +30,13 @@ pub(super) struct LightChunk<C: Colour> {
     pub weight: [C::Spectrum; CHUNK],
 }
 
+/// No emitter.
+const NOBODY: u32 = u32::MAX;
+
 /// The rectangle that was chosen in each lane.
 struct LampLanes {
-    /// Which emitter it is.
-    emitter: [Option<usize>; CHUNK],
+    /// Which emitter it is; [`NOBODY`] where there is none yet.
+    emitter: [u32; CHUNK],
     corner: VectorLanes<CHUNK>,
     first_edge: VectorLanes<CHUNK>,
     second_edge: VectorLanes<CHUNK>,
@@ -46,7 +49,7 @@ struct LampLanes {
 impl LampLanes {
     fn new() -> Self {
         Self {
-            emitter: [None; CHUNK],
+            emitter: [NOBODY; CHUNK],
             corner: VectorLanes::default(),
             first_edge: VectorLanes::default(),
             second_edge: VectorLanes::default(),
@@ -56,13 +59,9 @@ impl LampLanes {
         }
     }
 
-    /// Puts a lamp into its lane, where it often is already.
-    #[inline(always)]
-    fn put(&mut self, lane: usize, emitter: usize, lamp: &Parallelogram) {
-        if self.emitter[lane] == Some(emitter) {
-            return;
-        }
-        self.emitter[lane] = Some(emitter);
+    /// Puts emitter number `emitter`, a rectangle, into its lane.
+    fn put(&mut self, lane: usize, emitter: u32, lamp: &Parallelogram) {
+        self.emitter[lane] = emitter;
         self.corner.put(lane, lamp.corner.position);
         self.first_edge.put(lane, lamp.first_edge);
         self.second_edge.put(lane, lamp.second_edge);
@@ -98,19 +97,21 @@ impl<C: Colour> LightChunk<C> {
     ) {
         let emitters = &engine.scene.emitters;
         let [choice, u, v] = numbers;
-        for (lane, choice) in choice[..chunk.len()].iter().enumerate() {
-            let chosen = (choice * emitters.len() as f32) as usize;
-            self.emitter[lane] = chosen.min(emitters.len() - 1);
-            if let Some(lamp) = engine.lamp(self.emitter[lane]) {
-                self.lamps.put(lane, self.emitter[lane], lamp);
-            }
+        let (count, last) = (emitters.len() as f32, emitters.len() as i32 - 1);
+        for (emitter, choice) in self.emitter.iter_mut().zip(choice) {
+            *emitter = ((choice * count) as i32).min(last) as u32;
+        }
+        // With one lamp, what was chosen is what is there.
+        if self.emitter != self.lamps.emitter {
+            self.fetch_lamps(engine);
         }
         self.draw_lamps(positions, u, v);
         for (lane, i) in chunk.enumerate() {
             let wavelengths = &paths.wavelengths[vertices.path[i] as usize];
-            let emitter = &emitters[self.emitter[lane]];
+            let chosen = self.emitter[lane] as usize;
+            let emitter = &emitters[chosen];
             match emitter {
-                Emitter::Area(light) if engine.lamp(self.emitter[lane]).is_some() => {
+                Emitter::Area(light) if engine.lamp(chosen).is_some() => {
                     let radiance = C::evaluate(&light.radiance, wavelengths);
                     self.weight[lane] = radiance * self.lamps.weight[lane];
                 }
@@ -120,6 +121,15 @@ impl<C: Colour> LightChunk<C> {
                     let sample = emitter.sample::<C>(shapes, position, wavelengths, u);
                     self.put(lane, position, sample.as_ref());
                 }
+            }
+        }
+    }
+
+    /// Puts the rectangles that were chosen into their lanes.
+    fn fetch_lamps(&mut self, engine: &Engine) {
+        for (lane, &emitter) in self.emitter.iter().enumerate() {
+            if let Some(lamp) = engine.lamp(emitter as usize) {
+                self.lamps.put(lane, emitter, lamp);
             }
         }
     }

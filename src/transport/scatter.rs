@@ -39,7 +39,7 @@ pub(super) fn scatter<C: Colour>(
         sampler.fill(
             &points[..children.len()],
             Use::Direction(depth),
-            &mut numbers,
+            numbers.each_mut(),
         );
         let parents = children.iter().map(|child| child.parent as usize);
         let bsdfs = parents.clone().map(|parent| &vertices.bsdf[parent]);
