@@ -42,7 +42,11 @@ impl<const N: usize> VectorLanes<N> {
     #[inline(always)]
     pub fn load(&mut self, slices: [&[f32]; 3]) {
         for (lanes, slice) in self.0.iter_mut().zip(slices) {
-            lanes[..slice.len()].copy_from_slice(slice);
+            // Of a full chunk the length is known, and nobody need be called to copy it.
+            match <&[f32; N]>::try_from(slice) {
+                Ok(full) => *lanes = *full,
+                Err(_) => lanes[..slice.len()].copy_from_slice(slice),
+            }
         }
     }
 }
@@ -68,7 +72,11 @@ impl VectorColumn {
     #[inline(always)]
     pub fn append<const N: usize>(&mut self, lanes: &VectorLanes<N>, kept: &KeptLanes) {
         for (axis, lanes) in self.0.iter_mut().zip(&lanes.0) {
-            axis.extend(kept.iter().map(|lane| lanes[lane]));
+            if kept.len() == N {
+                axis.extend_from_slice(lanes);
+            } else {
+                axis.extend(kept.iter().map(|lane| lanes[lane]));
+            }
         }
     }
 
@@ -121,6 +129,10 @@ impl KeptLanes {
 /// Copies the lanes that `kept` names into `column`, which is as long.
 #[inline(always)]
 pub(crate) fn copy_kept(column: &mut [f32], lanes: &[f32; CHUNK], kept: &KeptLanes) {
+    if let Ok(all) = <&mut [f32; CHUNK]>::try_from(&mut *column) {
+        *all = *lanes;
+        return;
+    }
     for (place, lane) in column.iter_mut().zip(kept.iter()) {
         *place = lanes[lane];
     }

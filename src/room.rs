@@ -1,10 +1,15 @@
 //! Lists that are filled anew for every batch.
 
+/// How many entries there is to be room for where `count` are wanted.
+pub(crate) fn with_room(count: usize) -> usize {
+    (count + count / 4).next_power_of_two()
+}
+
 /// Empties `list` and makes room for `count` entries.
 ///
-/// Batches differ a little in size. Room is made for the next power of two, so that the first batch makes it for those
-/// that follow.
+/// Batches differ a little in size. Room is made for a quarter more and up to the next power of two, so that the first batch
+/// makes it for those that follow.
 pub(crate) fn make_room<T>(list: &mut Vec<T>, count: usize) {
     list.clear();
-    list.reserve(count.next_power_of_two());
+    list.reserve(with_room(count));
 }

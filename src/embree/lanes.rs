@@ -25,7 +25,7 @@ impl<T: Copy + Default> Lanes<T> {
         let needed = len.div_ceil(WIDTH);
         if needed > self.blocks.len() {
             // Batches differ a little in size: the first makes room for those that follow.
-            let room = needed.next_power_of_two();
+            let room = (needed + needed / 4).next_power_of_two();
             self.blocks.resize(room, Block([T::default(); WIDTH]));
         }
         self.len = len;

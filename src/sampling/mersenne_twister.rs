@@ -75,6 +75,14 @@ impl MersenneTwister {
                 self.refill();
             }
             let left = &self.numbers[self.taken..];
+            if let (Ok(all), Some(first)) = (
+                <&mut [u32; 64]>::try_from(&mut *numbers),
+                left.first_chunk(),
+            ) {
+                *all = *first;
+                self.taken += 64;
+                return;
+            }
             let count = left.len().min(numbers.len());
             let (now, later) = numbers.split_at_mut(count);
             now.copy_from_slice(&left[..count]);
@@ -85,8 +93,9 @@ impl MersenneTwister {
 
     #[inline(never)]
     fn refill(&mut self) {
-        self.state = advance(&self.state);
-        self.numbers = temper(&self.state);
+        let old = self.state;
+        advance(&old, &mut self.state);
+        temper(&self.state, &mut self.numbers);
         self.taken = 0;
     }
 }
@@ -102,13 +111,12 @@ fn twist(here: u32, behind: u32, middle: u32) -> u32 {
     middle ^ (joined >> 1) ^ ((joined & 1) * 0x9908_b0df)
 }
 
-/// The state after `old`.
+/// Makes `new` the state after `old`.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn advance(old: &[u32; BLOCK]) -> [u32; BLOCK] {
-    let mut new = [0; BLOCK];
+fn advance(old: &[u32; BLOCK], new: &mut [u32; BLOCK]) {
     for i in 0..AHEAD {
         new[i] = twist(old[i], old[i + 1], old[i + MIDDLE]);
     }
@@ -123,23 +131,21 @@ fn advance(old: &[u32; BLOCK]) -> [u32; BLOCK] {
         third[i] = twist(old[2 * AHEAD + i], old[2 * AHEAD + i + 1], second[i]);
     }
     third[last] = twist(old[BLOCK - 1], first[0], second[last]);
-    new
 }
 
-/// The numbers of a state: its words with their bits mixed.
+/// Makes `numbers` those of a state: its words with their bits mixed.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn temper(state: &[u32; BLOCK]) -> [u32; BLOCK] {
-    let mut numbers = *state;
-    for x in &mut numbers {
-        *x ^= *x >> 11;
-        *x ^= (*x << 7) & 0x9d2c_5680;
-        *x ^= (*x << 15) & 0xefc6_0000;
-        *x ^= *x >> 18;
+fn temper(state: &[u32; BLOCK], numbers: &mut [u32; BLOCK]) {
+    for (number, &word) in numbers.iter_mut().zip(state) {
+        let mut x = word;
+        x ^= x >> 11;
+        x ^= (x << 7) & 0x9d2c_5680;
+        x ^= (x << 15) & 0xefc6_0000;
+        *number = x ^ (x >> 18);
     }
-    numbers
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The standard observer, the illuminant D65 and linear sRGB.
 
 use super::cie_tables::{CIE_1931, D65, ENTRIES};
+use super::piecewise_linear::GridPlace;
 
 /// The shortest wavelength carried by a path, in nm.
 pub const WAVELENGTH_MIN: f32 = 360.0;
@@ -78,8 +79,8 @@ pub(super) fn illuminant_d65(nm: f32) -> f32 {
 #[inline(always)]
 fn locate(nm: f32) -> (usize, f32) {
     let position = (nm - WAVELENGTH_MIN) * (1.0 / STEP);
-    let entry = (position as usize).min(ENTRIES - 2);
-    (entry, position - entry as f32)
+    let GridPlace { entry, fraction } = GridPlace::of(position, (ENTRIES - 2) as f32);
+    (entry as usize, fraction)
 }
 
 /// Unbounded linear sRGB of a quantity given over the wavelength in nm, under the illuminant E (`emission`) or

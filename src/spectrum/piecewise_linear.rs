@@ -40,6 +40,31 @@ pub(super) struct IrregularTable {
     values: Box<[f32]>,
 }
 
+/// A place between two entries of a table.
+pub(super) struct GridPlace {
+    /// The entry before.
+    pub entry: u32,
+    /// The fraction of the way to the next, in [0, 1].
+    pub fraction: f32,
+}
+
+impl GridPlace {
+    /// That of `position`, in entries from 0 to one more than `last`, which is at most 2^22: the last entry that has one behind
+    /// it. What lies on an entry may be found at the end of the way from the one before.
+    ///
+    /// Conversions to integers by `as` look after numbers out of range and do not vectorise well. Adding 2^23 leaves the nearest
+    /// integer in the last bits.
+    #[inline(always)]
+    pub(super) fn of(position: f32, last: f32) -> Self {
+        const INTEGERS: f32 = (1 << 23) as f32;
+        let integer = (position - 0.5).clamp(0.0, last) + INTEGERS;
+        Self {
+            entry: integer.to_bits() - INTEGERS.to_bits(),
+            fraction: position - (integer - INTEGERS),
+        }
+    }
+}
+
 /// How far, in steps, an entry may be from its place in a regular table: the rounding of wavelengths to `f32`.
 const REGULARITY_TOLERANCE: f64 = 1e-4;
 
@@ -121,14 +146,14 @@ impl RegularTable {
     /// The value at each of the wavelengths `nm`.
     #[inline(always)]
     pub(super) fn evaluate<const N: usize>(&self, nm: &[f32; N]) -> [f32; N] {
-        let last = self.intervals.len() - 1;
-        let (mut entries, mut fractions, mut inside) = ([0_i32; N], [0.0; N], [0.0; N]);
+        let last = (self.intervals.len() - 1) as f32;
+        let (mut entries, mut fractions, mut inside) = ([0_u32; N], [0.0; N], [0.0; N]);
         for i in 0..N {
             // Without a jump: random wavelengths leave the range too unpredictably for one.
-            let position = (nm[i] - self.first_nm) * self.entries_per_nm;
-            let entry = (position as i32).clamp(0, last as i32);
-            entries[i] = entry;
-            fractions[i] = (position - entry as f32).clamp(0.0, 1.0);
+            let position = ((nm[i] - self.first_nm) * self.entries_per_nm).clamp(0.0, last + 1.0);
+            let place = GridPlace::of(position, last);
+            entries[i] = place.entry;
+            fractions[i] = place.fraction;
             let is_inside = (nm[i] >= self.first_nm) & (nm[i] <= self.last_nm);
             inside[i] = if is_inside { 1.0 } else { 0.0 };
         }

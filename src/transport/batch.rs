@@ -14,6 +14,9 @@ pub(super) struct CameraPaths<C: Colour> {
     pub wavelengths: Vec<C::Wavelengths>,
     /// What has arrived so far at the camera.
     pub radiance: Vec<C::Spectrum>,
+    /// What the curves of the [`EmissionTable`](super::emission_table::EmissionTable) are at those wavelengths: all of one path
+    /// side by side.
+    pub emission: Vec<C::Spectrum>,
     /// The reconstruction filter's weight of the sample.
     pub filter_weight: Vec<f32>,
 }
@@ -76,6 +79,7 @@ impl<C: Colour> CameraPaths<C> {
         Self {
             wavelengths: Vec::new(),
             radiance: Vec::new(),
+            emission: Vec::new(),
             filter_weight: Vec::new(),
         }
     }

@@ -74,6 +74,7 @@ pub(super) fn start<C: Colour>(
         }
     }
     paths.radiance.resize(count, C::Spectrum::ZERO);
+    engine.emission.prepare(paths);
 }
 
 /// Goes on to the next of the `samples` of a pixel, or to the first of the next pixel.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::accelerator::Accelerator;
 use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
+use super::emission_table::EmissionTable;
 use super::recorded_rays::RecordedRays;
 use super::settings::{DirectLight, TransportSettings};
 use super::stages::{Stage, Stopwatch};
@@ -29,6 +30,8 @@ pub struct Engine {
     pub(super) filter: FilterSampler,
     /// The probability with which next-event estimation chooses each emitter.
     pub(super) light_choice: f32,
+    /// What the emitters emit.
+    pub(super) emission: EmissionTable,
     /// The rectangle that an emitter is, by emitter, if it is one.
     lamps: Vec<Option<Parallelogram>>,
     /// Which emitter surrounds the scene; looked up once, for rays that leave the scene ask for it.
@@ -61,6 +64,7 @@ impl Engine {
                 .emitters
                 .iter()
                 .position(|emitter| matches!(emitter, Emitter::Constant(_))),
+            emission: EmissionTable::new(&scene.emitters),
             lamps: scene
                 .emitters
                 .iter()

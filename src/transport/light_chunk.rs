@@ -107,17 +107,18 @@ impl<C: Colour> LightChunk<C> {
         }
         self.draw_lamps(positions, u, v);
         for (lane, i) in chunk.enumerate() {
-            let wavelengths = &paths.wavelengths[vertices.path[i] as usize];
+            let path = vertices.path[i] as usize;
             let chosen = self.emitter[lane] as usize;
             let emitter = &emitters[chosen];
             match emitter {
                 Emitter::Area(light) if engine.lamp(chosen).is_some() => {
-                    let radiance = C::evaluate(&light.radiance, wavelengths);
+                    let radiance = engine.emission.radiance(paths, path, chosen, light);
                     self.weight[lane] = radiance * self.lamps.weight[lane];
                 }
                 _ => {
                     let (position, u) = (positions.get(lane), [u[lane], v[lane]]);
                     let shapes = &engine.scene.shapes;
+                    let wavelengths = &paths.wavelengths[path];
                     let sample = emitter.sample::<C>(shapes, position, wavelengths, u);
                     self.put(lane, position, sample.as_ref());
                 }

@@ -16,6 +16,7 @@ mod batch;
 mod camera;
 mod direct;
 mod emission;
+mod emission_table;
 mod engine;
 mod hidden_emitters;
 mod intersect;

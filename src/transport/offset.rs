@@ -6,14 +6,15 @@ use glam::Vec3;
 const ORIGIN: f32 = 1.0 / 32.0;
 /// The fixed offset, in scene units.
 const FLOAT_SCALE: f32 = 1.0 / 65536.0;
-/// The relative offset, in units of the last place.
-const INT_SCALE: f32 = 256.0;
+/// The relative offset: between 256 and 512 units of the last place.
+const RELATIVE_SCALE: f32 = 1.0 / 32768.0;
 
 /// Moves `position` off its surface to the side to which `direction` points; all in world space, `normal` the unit
 /// geometric normal on either side.
 ///
-/// The distance is in units of the last place of each coordinate (Wächter and Binder 2019, "A Fast and Robust Method
-/// for Avoiding Self-Intersection"): it fits any scene scale.
+/// The distance follows the precision of each coordinate, so that it fits any scene scale: Wächter and Binder 2019, "A Fast
+/// and Robust Method for Avoiding Self-Intersection", in whose code it is 256 units of the last place. Here it is in proportion
+/// to the coordinate, at least as far, and without a detour over integers.
 #[inline(always)]
 pub(super) fn leave_surface(position: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     let outward = if normal.dot(direction) < 0.0 {
@@ -30,12 +31,13 @@ pub(super) fn leave_surface(position: Vec3, normal: Vec3, direction: Vec3) -> Ve
 
 #[inline(always)]
 fn offset_coordinate(position: f32, normal: f32) -> f32 {
-    if position.abs() < ORIGIN {
-        return position + FLOAT_SCALE * normal;
-    }
-    let units = (INT_SCALE * normal) as i32;
-    let towards_normal = if position < 0.0 { -units } else { units };
-    f32::from_bits((position.to_bits() as i32).wrapping_add(towards_normal) as u32)
+    let magnitude = position.abs();
+    let scale = if magnitude < ORIGIN {
+        FLOAT_SCALE
+    } else {
+        RELATIVE_SCALE * magnitude
+    };
+    position + scale * normal
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The children that a strategy has given to a population.
 
 use super::{ExpectedCount, Population, Rounding, WalkReport};
-use crate::room::make_room;
+use crate::room::{make_room, with_room};
 use crate::sampling::RandomStream;
 
 /// One particle of the next generation, at the vertex of its parent and about to choose its direction.
@@ -43,7 +43,7 @@ impl Offspring {
 
     /// Room for one wish per particle of a population, with unspecified contents.
     pub(super) fn wishes_mut(&mut self, particles: usize) -> &mut [f32] {
-        let room = particles.next_power_of_two();
+        let room = with_room(particles);
         self.wishes.reserve(room.saturating_sub(self.wishes.len()));
         self.wishes.resize(particles, 0.0);
         &mut self.wishes
