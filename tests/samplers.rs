@@ -66,7 +66,7 @@ fn sobol_points_leave_less_noise() {
     let scene = many_emitters(24);
     let of = |sampler| {
         let settings = settings(StrategyKind::Roulette, sampler);
-        noise(&replicates(&scene, settings, 0..24, 16))
+        noise(&replicates(&scene, settings, 0..96, 16))
     };
     let [independent, sobol] = SamplerKind::ALL.map(of);
     println!("variance: independent {independent}, sobol {sobol}");
