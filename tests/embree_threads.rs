@@ -28,7 +28,7 @@ fn build(threads: usize) -> Result<Scene, EmbreeError> {
         })
     });
     let mesh = TriangleMesh::new(
-        Arc::new(VertexBuffer::new(corners.collect())),
+        Arc::new(VertexBuffer::new(corners)),
         Arc::new(IndexBuffer::new(triangles.collect())),
     )?;
     let mut builder = SceneBuilder::new(&device, BuildOptions::default());

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::buffer::{IndexBuffer, VertexBuffer};
+use super::buffer::{IndexBuffer, Vertex, VertexBuffer};
 use super::device::Device;
 use super::error::EmbreeError;
 use super::geometry::{GeometryHandle, is_valid};
@@ -36,10 +36,13 @@ impl TriangleMesh {
                 count: triangles.len(),
             });
         }
-        if let Some(vertex) = vertices.iter().position(|&position| !is_valid(position)) {
+        if let Some(vertex) = vertices
+            .iter()
+            .position(|vertex| !is_valid(vertex.position))
+        {
             return Err(EmbreeError::BadVertex {
                 vertex,
-                position: vertices[vertex],
+                position: vertices[vertex].position,
             });
         }
         let count = vertices.len();
@@ -58,7 +61,7 @@ impl TriangleMesh {
         })
     }
 
-    /// Vertex positions.
+    /// The vertices.
     pub fn vertices(&self) -> &Arc<VertexBuffer> {
         &self.vertices
     }
@@ -72,9 +75,9 @@ impl TriangleMesh {
     /// must outlive the object and every scene that it is attached to.
     pub(super) fn to_embree(&self, device: &Device) -> Result<GeometryHandle, EmbreeError> {
         let geometry = GeometryHandle::new(device, raw::RTCGeometryType::TRIANGLE)?;
-        // SAFETY: the geometry is alive; the buffers hold as many triples of the stated format as
-        // stated, never change, have Embree's padding, and outlive the geometry (see above); every
-        // index was checked.
+        // SAFETY: the geometry is alive; the buffers hold as many triples of the stated format, at the
+        // stated distances, as stated; they never change, 16 bytes are readable at each triple as
+        // Embree asks, and they outlive the geometry (see above); every index was checked.
         unsafe {
             raw::rtcSetSharedGeometryBuffer(
                 geometry.raw(),
@@ -83,7 +86,7 @@ impl TriangleMesh {
                 raw::RTCFormat::FLOAT3,
                 self.vertices.as_ptr().cast(),
                 0,
-                size_of::<[f32; 3]>() as _,
+                size_of::<Vertex>() as _,
                 self.vertices.len() as _,
             );
             raw::rtcSetSharedGeometryBuffer(

@@ -43,7 +43,7 @@ impl Accelerator {
         for shape in &scene.shapes {
             match &shape.geometry {
                 Geometry::Triangles(mesh) => {
-                    let mesh = TriangleMesh::new(mesh.positions().clone(), mesh.indices().clone())?;
+                    let mesh = TriangleMesh::new(mesh.vertices().clone(), mesh.indices().clone())?;
                     builder.add_triangles(mesh)
                 }
                 Geometry::Sphere(sphere) => builder.add_user(*sphere),

@@ -52,7 +52,7 @@ impl Soup {
 }
 
 fn mesh(triangles: &[[[f32; 3]; 3]]) -> TriangleMesh {
-    let vertices = triangles.iter().flatten().copied().collect();
+    let vertices = triangles.iter().flatten().copied();
     let indices = (0..triangles.len() as u32)
         .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
         .collect();

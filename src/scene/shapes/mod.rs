@@ -254,7 +254,10 @@ impl Geometry {
     fn is_within_reach(&self) -> bool {
         let near = |point: Vec3| point.abs().max_element() <= FARTHEST;
         match self {
-            Self::Triangles(mesh) => mesh.positions().iter().all(|&point| near(point.into())),
+            Self::Triangles(mesh) => {
+                let mut vertices = mesh.vertices().iter();
+                vertices.all(|vertex| near(vertex.position.into()))
+            }
             Self::Sphere(Sphere { center, radius, .. }) => {
                 near(*center) && *radius <= FARTHEST && self.area().is_normal()
             }

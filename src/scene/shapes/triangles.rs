@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use super::lanes::{CornerLanes, SurfaceLanes};
 use super::mesh_sampling::{MeshSampling, Parallelogram};
 use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfacePoint};
-use crate::embree::{IndexBuffer, VertexBuffer};
+use crate::embree::{IndexBuffer, Vertex, VertexBuffer};
 use crate::scene::error::SceneError;
 use crate::scene::mesh::{self, MeshData};
 use crate::scene::xml::Object;
@@ -15,7 +15,7 @@ use crate::scene::xml::Object;
 /// A triangle mesh in world space. Its buffers are shared with the intersection layer, not copied.
 #[derive(Debug)]
 pub struct Triangles {
-    positions: Arc<VertexBuffer>,
+    vertices: Arc<VertexBuffer>,
     indices: Arc<IndexBuffer>,
     attributes: TriangleAttributes,
     area: f32,
@@ -23,11 +23,11 @@ pub struct Triangles {
     sampling: Option<MeshSampling>,
 }
 
-/// What a mesh carries beside positions and indices.
-#[derive(Clone, Debug, Default)]
+/// What a mesh is beside vertices and indices.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct TriangleAttributes {
-    /// Unit vertex normals in world space; without them the mesh is shaded flat.
-    pub normals: Option<VertexBuffer>,
+    /// Whether the vertices have normals; without them the mesh is shaded flat.
+    pub is_smooth: bool,
     /// Whether the clockwise side of the triangles is the outer one.
     pub flip_normals: bool,
 }
@@ -88,31 +88,36 @@ impl Triangles {
             ),
             None => None,
         };
+        let normals = normals.filter(|normals| !are_flat(&mesh, normals));
         let attributes = TriangleAttributes {
-            normals: normals
-                .filter(|normals| !are_flat(&mesh, normals))
-                .map(|normals| VertexBuffer::new(normals.into_iter().map(Vec3::into).collect())),
+            is_smooth: normals.is_some(),
             flip_normals: placement.flip_normals,
         };
-        let positions = Arc::new(VertexBuffer::new(mesh.positions));
+        let vertices = Arc::new(match normals {
+            Some(normals) => {
+                let normals = normals.into_iter().map(Vec3::into);
+                VertexBuffer::with_normals(mesh.positions.into_iter().zip(normals))
+            }
+            None => VertexBuffer::new(mesh.positions),
+        });
         let indices = Arc::new(IndexBuffer::new(mesh.triangles));
         Ok(Geometry::Triangles(Self::new(
-            positions, indices, attributes,
+            vertices, indices, attributes,
         )))
     }
 
-    /// The mesh over buffers in world space. Indices must be in range and `attributes.normals`, if given, as long as
-    /// `positions` (every mesh reader of [`crate::scene::mesh`] keeps this).
+    /// The mesh over buffers in world space. Indices must be in range (every mesh reader of [`crate::scene::mesh`] keeps
+    /// this).
     pub fn new(
-        positions: Arc<VertexBuffer>,
+        vertices: Arc<VertexBuffer>,
         indices: Arc<IndexBuffer>,
         attributes: TriangleAttributes,
     ) -> Self {
-        let area = triangle_areas(&positions, &indices)
+        let area = triangle_areas(&vertices, &indices)
             .map(f64::from)
             .sum::<f64>() as f32;
         Self {
-            positions,
+            vertices,
             indices,
             attributes,
             area,
@@ -134,9 +139,9 @@ impl Triangles {
         }
     }
 
-    /// The vertex positions, in world space.
-    pub fn positions(&self) -> &Arc<VertexBuffer> {
-        &self.positions
+    /// The vertices, in world space.
+    pub fn vertices(&self) -> &Arc<VertexBuffer> {
+        &self.vertices
     }
 
     /// The vertex indices of the triangles.
@@ -146,7 +151,7 @@ impl Triangles {
 
     /// Whether the mesh is shaded with vertex normals.
     pub fn is_smooth(&self) -> bool {
-        self.attributes.normals.is_some()
+        self.attributes.is_smooth
     }
 
     #[inline]
@@ -174,17 +179,14 @@ impl Triangles {
     /// Says that [`Self::corners`] of a triangle will be asked for soon.
     #[inline(always)]
     pub(crate) fn prefetch_corners(&self, triangle: u32) {
-        self.indices.prefetch(triangle as usize);
+        self.indices.prefetch(triangle);
     }
 
     /// Says that [`Self::fetch`] will be asked for soon.
     #[inline(always)]
     pub(crate) fn prefetch(&self, corners: [u32; 3]) {
         for corner in corners {
-            self.positions.prefetch(corner as usize);
-            if let Some(normals) = &self.attributes.normals {
-                normals.prefetch(corner as usize);
-            }
+            self.vertices.prefetch(corner);
         }
     }
 
@@ -196,16 +198,11 @@ impl Triangles {
         lanes: &mut CornerLanes<N>,
         lane: usize,
     ) {
-        let corners = corners.map(|i| i as usize);
-        let positions = &**self.positions;
-        let normals = match &self.attributes.normals {
-            Some(normals) => corners.map(|i| Vec3::from(normals[i])),
-            None => [Vec3::ZERO; 3],
-        };
+        let corners = corners.map(|corner| self.vertices[corner as usize]);
         lanes.set(
             lane,
-            corners.map(|i| Vec3::from(positions[i])),
-            normals,
+            corners.map(|corner| corner.position.into()),
+            corners.map(|corner| corner.normal.into()),
             self.attributes.flip_normals,
         );
     }
@@ -215,7 +212,7 @@ impl Triangles {
     }
 
     pub(super) fn triangle_areas(&self) -> impl Iterator<Item = f32> {
-        triangle_areas(&self.positions, &self.indices)
+        triangle_areas(&self.vertices, &self.indices)
     }
 
     #[inline(always)]
@@ -229,9 +226,9 @@ impl Triangles {
     }
 }
 
-fn triangle_areas(positions: &[[f32; 3]], indices: &[[u32; 3]]) -> impl Iterator<Item = f32> {
+fn triangle_areas(vertices: &[Vertex], indices: &[[u32; 3]]) -> impl Iterator<Item = f32> {
     indices.iter().map(|triangle| {
-        let [a, b, c] = triangle.map(|i| Vec3::from(positions[i as usize]));
+        let [a, b, c] = triangle.map(|i| Vec3::from(vertices[i as usize].position));
         0.5 * (b - a).cross(c - a).length()
     })
 }
