@@ -42,12 +42,18 @@ impl<const N: usize> VectorLanes<N> {
     #[inline(always)]
     pub fn load(&mut self, slices: [&[f32]; 3]) {
         for (lanes, slice) in self.0.iter_mut().zip(slices) {
-            // Of a full chunk the length is known, and nobody need be called to copy it.
-            match <&[f32; N]>::try_from(slice) {
-                Ok(full) => *lanes = *full,
-                Err(_) => lanes[..slice.len()].copy_from_slice(slice),
-            }
+            load(lanes, slice);
         }
+    }
+}
+
+/// The first lanes are those of `slice`, at most `N`; the others stay what they were.
+#[inline(always)]
+pub(crate) fn load<const N: usize>(lanes: &mut [f32; N], slice: &[f32]) {
+    // Of a full chunk the length is known, and nobody need be called to copy it.
+    match <&[f32; N]>::try_from(slice) {
+        Ok(full) => *lanes = *full,
+        Err(_) => lanes[..slice.len()].copy_from_slice(slice),
     }
 }
 

@@ -30,7 +30,7 @@ pub(super) fn arrive<C: Colour>(
 ) {
     vertices.restart(segments.len());
     let hidden = camera_rays && engine.settings.hide_emitters;
-    let mut surfaces = SurfaceChunk::default();
+    let mut surfaces = SurfaceChunk::new();
     let mut sides = SideChunk::new();
     for start in (0..segments.len()).step_by(CHUNK) {
         let chunk = start..segments.len().min(start + CHUNK);
@@ -43,8 +43,7 @@ pub(super) fn arrive<C: Colour>(
         for (lane, i) in chunk.enumerate() {
             let path = segments.path[i];
             let wavelengths = &paths.wavelengths[path as usize];
-            let hit = segments.hits.geometry_id(i);
-            let Some(shape) = engine.accelerator.shape(&engine.scene, hit) else {
+            let Some(shape) = surfaces.shapes[lane] else {
                 if let Some(light) = engine.surroundings().filter(|_| !hidden) {
                     let weight = engine.mis_weight(segments.direction_pdf[i], light.pdf());
                     let radiance = light.radiance::<C>(wavelengths) * weight;

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::batch::Segments;
 use super::engine::Engine;
-use crate::lanes::CHUNK;
-use crate::scene::{CornerLanes, Geometry, HitCoordinates, SurfaceLanes};
+use crate::lanes::{CHUNK, load};
+use crate::scene::{CornerLanes, Geometry, HitCoordinates, Shape, SurfaceLanes};
 use crate::spectrum::Colour;
 
 /// The surface points of a chunk of hits.
@@ -13,102 +13,114 @@ use crate::spectrum::Colour;
 /// Vertices lie scattered in memory, and a loop that fetched and used them hit by hit would wait for each in turn. So a
 /// chunk is taken in steps, indices, vertices, arithmetic: what a step needs is announced a step before, and the processor
 /// fetches it meanwhile; the arithmetic is one loop over lanes.
-pub(super) struct SurfaceChunk {
-    indices: [[u32; 3]; CHUNK],
-    corners: CornerLanes<CHUNK>,
+pub(super) struct SurfaceChunk<'s> {
+    /// The shapes hit; none by misses.
+    pub shapes: [Option<&'s Shape>; CHUNK],
+    /// Those of the chunk that follows.
+    next_shapes: [Option<&'s Shape>; CHUNK],
+    corners: [[u32; 3]; CHUNK],
+    triangles: CornerLanes<CHUNK>,
     /// Those of misses mean nothing.
     pub points: SurfaceLanes<CHUNK>,
 }
 
-impl Default for SurfaceChunk {
-    fn default() -> Self {
+impl<'s> SurfaceChunk<'s> {
+    pub fn new() -> Self {
         Self {
-            indices: [[0; 3]; CHUNK],
-            corners: CornerLanes::default(),
+            shapes: [None; CHUNK],
+            next_shapes: [None; CHUNK],
+            corners: [[0; 3]; CHUNK],
+            triangles: CornerLanes::default(),
             points: SurfaceLanes::default(),
         }
     }
-}
 
-impl SurfaceChunk {
-    /// Finds the surface points of the segments `chunk`, which are at most [`CHUNK`].
+    /// Finds the surface points of the segments `chunk`, at most [`CHUNK`]: first of the first ones, then of those that
+    /// follow.
     #[inline(always)]
     pub fn locate<C: Colour>(
         &mut self,
-        engine: &Engine,
+        engine: &'s Engine,
         segments: &Segments<C>,
         chunk: Range<usize>,
     ) {
-        let geometries = &segments.hits.geometry_ids()[chunk.clone()];
+        if chunk.start == 0 {
+            self.announce(engine, segments, 0);
+        }
+        self.shapes = self.next_shapes;
         let primitives = &segments.hits.primitive_ids()[chunk.clone()];
-        let (mut u, mut v) = ([0.0; CHUNK], [0.0; CHUNK]);
-        u[..chunk.len()].copy_from_slice(&segments.hits.us()[chunk.clone()]);
-        v[..chunk.len()].copy_from_slice(&segments.hits.vs()[chunk.clone()]);
         let mut has_quadrics = false;
-        for (lane, (&geometry, &primitive)) in geometries.iter().zip(primitives).enumerate() {
-            match geometry_of(engine, geometry) {
-                Some(Geometry::Triangles(mesh)) => {
-                    let corners = mesh.corners(primitive);
-                    mesh.prefetch(corners);
-                    self.indices[lane] = corners;
+        for (lane, &primitive) in primitives.iter().enumerate() {
+            if let Some(shape) = self.shapes[lane] {
+                match &shape.geometry {
+                    Geometry::Triangles(mesh) => {
+                        let corners = mesh.corners(primitive);
+                        mesh.prefetch(corners);
+                        self.corners[lane] = corners;
+                    }
+                    _ => has_quadrics = true,
                 }
-                Some(_) => has_quadrics = true,
-                None => {}
             }
         }
-        prefetch_corners(engine, segments, chunk.end..chunk.end + CHUNK);
-        for (lane, &geometry) in geometries.iter().enumerate() {
-            if let Some(Geometry::Triangles(mesh)) = geometry_of(engine, geometry) {
-                mesh.fetch(self.indices[lane], &mut self.corners, lane);
+        self.announce(engine, segments, chunk.end);
+        let shapes = &self.shapes[..chunk.len()];
+        for (lane, (shape, corners)) in shapes.iter().zip(&self.corners).enumerate() {
+            if let Some(Shape {
+                geometry: Geometry::Triangles(mesh),
+                ..
+            }) = shape
+            {
+                mesh.fetch(*corners, &mut self.triangles, lane);
             }
         }
-        self.corners.interpolate(&u, &v, &mut self.points);
+        let (mut u, mut v) = ([0.0; CHUNK], [0.0; CHUNK]);
+        load(&mut u, &segments.hits.us()[chunk.clone()]);
+        load(&mut v, &segments.hits.vs()[chunk.clone()]);
+        self.triangles.interpolate(&u, &v, &mut self.points);
         if has_quadrics {
-            self.locate_quadrics(engine, segments, chunk);
+            self.locate_quadrics(segments, chunk);
+        }
+    }
+
+    /// Looks at what the chunk of segments from `start` on has met, and says that its triangles will be asked for soon.
+    #[inline(always)]
+    fn announce<C: Colour>(&mut self, engine: &'s Engine, segments: &Segments<C>, start: usize) {
+        let chunk = start..segments.len().min(start + CHUNK);
+        let geometries = &segments.hits.geometry_ids()[chunk.clone()];
+        let primitives = &segments.hits.primitive_ids()[chunk];
+        let hits = geometries.iter().zip(primitives);
+        for (next, (&geometry, &primitive)) in self.next_shapes.iter_mut().zip(hits) {
+            *next = engine.accelerator.shape(&engine.scene, geometry);
+            if let Some(Shape {
+                geometry: Geometry::Triangles(mesh),
+                ..
+            }) = next
+            {
+                mesh.prefetch_corners(primitive);
+            }
         }
     }
 
     /// Finds the points of those that are no meshes.
-    fn locate_quadrics<C: Colour>(
-        &mut self,
-        engine: &Engine,
-        segments: &Segments<C>,
-        chunk: Range<usize>,
-    ) {
+    fn locate_quadrics<C: Colour>(&mut self, segments: &Segments<C>, chunk: Range<usize>) {
         for (lane, i) in chunk.enumerate() {
-            let Some(geometry) = geometry_of(engine, segments.hits.geometry_id(i)) else {
-                continue;
-            };
-            if !matches!(geometry, Geometry::Triangles(_)) {
-                let [u, v] = segments.hits.uv(i);
-                let point = geometry.surface(&HitCoordinates {
-                    primitive: segments.hits.primitive_id(i),
-                    u,
-                    v,
-                    normal: segments.hits.normal(i).into(),
-                });
-                self.points.set(lane, &point);
+            match self.shapes[lane] {
+                None
+                | Some(Shape {
+                    geometry: Geometry::Triangles(_),
+                    ..
+                }) => {}
+                Some(shape) => {
+                    let [u, v] = segments.hits.uv(i);
+                    let point = shape.geometry.surface(&HitCoordinates {
+                        primitive: segments.hits.primitive_id(i),
+                        u,
+                        v,
+                        normal: segments.hits.normal(i).into(),
+                    });
+                    self.points.set(lane, &point);
+                }
             }
         }
     }
-}
-
-/// Says that the triangles which the segments `next` met will be asked for soon.
-#[inline(always)]
-fn prefetch_corners<C: Colour>(engine: &Engine, segments: &Segments<C>, next: Range<usize>) {
-    let next = next.start..next.end.min(segments.len());
-    let geometries = &segments.hits.geometry_ids()[next.clone()];
-    let primitives = &segments.hits.primitive_ids()[next];
-    for (&geometry, &primitive) in geometries.iter().zip(primitives) {
-        if let Some(Geometry::Triangles(mesh)) = geometry_of(engine, geometry) {
-            mesh.prefetch_corners(primitive);
-        }
-    }
-}
-
-/// The shape that a geometry number names, if it is one: misses have none.
-#[inline(always)]
-fn geometry_of(engine: &Engine, geometry: u32) -> Option<&Geometry> {
-    let shape = engine.accelerator.shape(&engine.scene, geometry)?;
-    Some(&shape.geometry)
 }
