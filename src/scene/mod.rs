@@ -3,6 +3,7 @@
 mod bsdfs;
 mod emitters;
 mod error;
+mod image_file;
 mod load;
 pub mod mesh;
 mod sensors;
@@ -13,6 +14,7 @@ pub mod xml;
 pub use bsdfs::{Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Model, Side};
 pub use emitters::{AreaLight, ConstantLight, Emitter, LightSample, PointLight};
 pub use error::{Location, SceneError};
+pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};
 pub use load::LoadOptions;
 pub use sensors::{
     CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis,
