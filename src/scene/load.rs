@@ -134,8 +134,7 @@ impl<'d> Loader<'d> {
     }
 
     fn add_surrounding(&mut self, object: &Object, emitter: Emitter) -> Result<(), SceneError> {
-        let surrounds = |emitter: &Emitter| matches!(emitter, Emitter::Constant(_));
-        if surrounds(&emitter) && self.emitters.iter().any(surrounds) {
+        if emitter.surrounds() && self.emitters.iter().any(Emitter::surrounds) {
             return Err(
                 object.error("the scene already has an emitter that surrounds it; it can have one")
             );

@@ -15,7 +15,7 @@ use super::shapes::SurfacePoint;
 use super::xml::Object;
 use super::{Shape, ShapeId};
 use crate::sampling::SolidAnglePdf;
-use crate::spectrum::Colour;
+use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// An emitter of a scene file that stands on its own.
 pub(super) fn load(object: &Object) -> Result<Emitter, SceneError> {
@@ -86,5 +86,34 @@ impl Emitter {
     /// Whether only next-event estimation can find this light.
     pub fn is_delta(&self) -> bool {
         matches!(self, Self::Point(_))
+    }
+
+    /// Whether it is what rays see that leave the scene.
+    pub fn surrounds(&self) -> bool {
+        matches!(self, Self::Constant(_))
+    }
+
+    /// The radiance that arrives from `direction` (unit, world space, away from the scene) where the light
+    /// [surrounds](Self::surrounds) the scene; nothing from other lights.
+    #[inline]
+    pub fn surrounding_radiance<C: Colour>(
+        &self,
+        _direction: Vec3,
+        wavelengths: &C::Wavelengths,
+    ) -> C::Spectrum {
+        match self {
+            Self::Constant(light) => light.radiance::<C>(wavelengths),
+            Self::Area(_) | Self::Point(_) => C::Spectrum::ZERO,
+        }
+    }
+
+    /// The density with which [`Self::sample`] draws `direction` (unit, world space) where the light
+    /// [surrounds](Self::surrounds) the scene; 0 for other lights.
+    #[inline]
+    pub fn surrounding_pdf(&self, _direction: Vec3) -> SolidAnglePdf {
+        match self {
+            Self::Constant(light) => light.pdf(),
+            Self::Area(_) | Self::Point(_) => SolidAnglePdf(0.0),
+        }
     }
 }
