@@ -40,8 +40,9 @@ pub(super) fn arrive<C: Colour>(
             let hit = segments.hits.geometry_id(i);
             let Some(shape) = engine.accelerator.shape(&engine.scene, hit) else {
                 if let Some(light) = engine.surroundings().filter(|_| !hidden) {
-                    let weight = engine.mis_weight(segments.direction_pdf[i], light.pdf());
-                    let radiance = light.radiance::<C>(wavelengths) * weight;
+                    let light_pdf = light.surrounding_pdf(direction);
+                    let weight = engine.mis_weight(segments.direction_pdf[i], light_pdf);
+                    let radiance = light.surrounding_radiance::<C>(direction, wavelengths) * weight;
                     paths.radiance[path as usize] += segments.throughput[i] * radiance;
                 }
                 continue;

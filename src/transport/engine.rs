@@ -12,7 +12,7 @@ use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_
 use crate::embree::{Coherence, Version};
 use crate::film::{Accumulator, FilmTile, FilterSampler, PixelStatistics, TilePixels};
 use crate::sampling::{Sampler, SamplerKind, StreamKey};
-use crate::scene::{ConstantLight, Emitter, Projection, Scene};
+use crate::scene::{Emitter, Projection, Scene};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::{Offspring, Scope, Strategy};
 
@@ -55,10 +55,7 @@ impl Engine {
         Self {
             projection: scene.camera.project(scene.film.size),
             filter: FilterSampler::new(&scene.film),
-            surroundings: scene
-                .emitters
-                .iter()
-                .position(|emitter| matches!(emitter, Emitter::Constant(_))),
+            surroundings: scene.emitters.iter().position(Emitter::surrounds),
             light_choice: 1.0 / scene.emitters.len().max(1) as f32,
             scene,
             accelerator,
@@ -84,11 +81,8 @@ impl Engine {
 
     /// The light that surrounds the scene, if there is one.
     #[inline]
-    pub(super) fn surroundings(&self) -> Option<&ConstantLight> {
-        match &self.scene.emitters[self.surroundings?] {
-            Emitter::Constant(light) => Some(light),
-            Emitter::Area(_) | Emitter::Point(_) => None,
-        }
+    pub(super) fn surroundings(&self) -> Option<&Emitter> {
+        Some(&self.scene.emitters[self.surroundings?])
     }
 }
 
