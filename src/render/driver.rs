@@ -54,7 +54,7 @@ pub enum RenderError {
     EndlessPaths,
     /// Lights that can only be found by next-event estimation, which is off.
     #[error(
-        "the scene has a point light, which paths cannot hit: it needs next-event estimation (`--direct next-event`)"
+        "the scene has a light without extent (`point`, `spot` or `directional`), which paths cannot hit: it needs next-event estimation (`--direct next-event`)"
     )]
     UnreachableLight,
 }

@@ -12,7 +12,9 @@ mod spectra;
 pub mod xml;
 
 pub use bsdfs::{Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Model, Side};
-pub use emitters::{AreaLight, ConstantLight, Emitter, LightSample, PointLight};
+pub use emitters::{
+    AreaLight, ConstantLight, DirectionalLight, Emitter, LightSample, PointLight, SpotLight,
+};
 pub use error::{Location, SceneError};
 pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};
 pub use load::LoadOptions;

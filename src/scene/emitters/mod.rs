@@ -2,11 +2,17 @@
 
 mod area;
 mod constant;
+mod directional;
 mod point;
+mod spot;
+#[cfg(test)]
+mod tests;
 
 pub use area::AreaLight;
 pub use constant::ConstantLight;
+pub use directional::DirectionalLight;
 pub use point::PointLight;
+pub use spot::SpotLight;
 
 use glam::Vec3;
 
@@ -21,6 +27,8 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 pub(super) fn load(object: &Object) -> Result<Emitter, SceneError> {
     match object.plugin.as_str() {
         "point" => PointLight::load(object).map(Emitter::Point),
+        "spot" => SpotLight::load(object).map(Emitter::Spot),
+        "directional" => DirectionalLight::load(object).map(Emitter::Directional),
         "constant" => ConstantLight::load(object).map(Emitter::Constant),
         _ => Err(object.unsupported(&SUPPORTED)),
     }
@@ -37,7 +45,7 @@ pub(super) fn load_area(object: &Object, shape: ShapeId) -> Result<AreaLight, Sc
     }
 }
 
-const SUPPORTED: [&str; 3] = ["area", "point", "constant"];
+const SUPPORTED: [&str; 5] = ["area", "point", "spot", "directional", "constant"];
 
 /// A source of light.
 #[derive(Clone, Debug)]
@@ -46,6 +54,10 @@ pub enum Emitter {
     Area(AreaLight),
     /// `point`: an isotropic point.
     Point(PointLight),
+    /// `spot`: a point with a cone of light.
+    Spot(SpotLight),
+    /// `directional`: infinitely far away, in one direction.
+    Directional(DirectionalLight),
     /// `constant`: the same radiance from every direction.
     Constant(ConstantLight),
 }
@@ -55,13 +67,13 @@ pub enum Emitter {
 pub struct LightSample<S> {
     /// Unit direction from the reference point to the light, in world space.
     pub direction: Vec3,
-    /// Distance to the light in scene units; infinite for the surroundings.
+    /// Distance to the light in scene units; infinite for surroundings and directional lights.
     pub distance: f32,
     /// The point of the light, where it has a surface.
     pub surface: Option<SurfacePoint>,
-    /// Radiance over density; for a point light, intensity over squared distance.
+    /// Radiance over density; where there is no density, irradiance on a surface that faces the light.
     pub weight: S,
-    /// The density of `direction`; `None` where only this way of sampling can find the light (a point light).
+    /// The density of `direction`; `None` where only this way of sampling can find the light (points, single directions).
     pub pdf: Option<SolidAnglePdf>,
 }
 
@@ -79,13 +91,15 @@ impl Emitter {
         match self {
             Self::Area(light) => light.sample::<C>(shapes, reference, wavelengths, u),
             Self::Point(light) => light.sample::<C>(reference, wavelengths),
+            Self::Spot(light) => light.sample::<C>(reference, wavelengths),
+            Self::Directional(light) => Some(light.sample::<C>(wavelengths)),
             Self::Constant(light) => Some(light.sample::<C>(wavelengths, u)),
         }
     }
 
     /// Whether only next-event estimation can find this light.
     pub fn is_delta(&self) -> bool {
-        matches!(self, Self::Point(_))
+        matches!(self, Self::Point(_) | Self::Spot(_) | Self::Directional(_))
     }
 
     /// Whether it is what rays see that leave the scene.
@@ -103,7 +117,7 @@ impl Emitter {
     ) -> C::Spectrum {
         match self {
             Self::Constant(light) => light.radiance::<C>(wavelengths),
-            Self::Area(_) | Self::Point(_) => C::Spectrum::ZERO,
+            _ => C::Spectrum::ZERO,
         }
     }
 
@@ -113,7 +127,7 @@ impl Emitter {
     pub fn surrounding_pdf(&self, _direction: Vec3) -> SolidAnglePdf {
         match self {
             Self::Constant(light) => light.pdf(),
-            Self::Area(_) | Self::Point(_) => SolidAnglePdf(0.0),
+            _ => SolidAnglePdf(0.0),
         }
     }
 }
