@@ -116,7 +116,7 @@ impl<'d> Loader<'d> {
         for child in root.children(Class::Emitter) {
             // An area light outside of a shape is there to be referred to from shapes.
             if child.object.plugin != "area" {
-                let emitter = emitters::load(&child.object)?;
+                let emitter = emitters::load(&child.object, &self)?;
                 self.add_surrounding(&child.object, emitter)?;
             }
         }

@@ -13,7 +13,8 @@ pub mod xml;
 
 pub use bsdfs::{Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Model, Side};
 pub use emitters::{
-    AreaLight, ConstantLight, DirectionalLight, Emitter, LightSample, PointLight, SpotLight,
+    AreaLight, ConstantLight, DirectionalLight, Emitter, EnvironmentMap, LightSample, PointLight,
+    SpotLight,
 };
 pub use error::{Location, SceneError};
 pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};

@@ -3,6 +3,7 @@
 mod area;
 mod constant;
 mod directional;
+mod environment;
 mod point;
 mod spot;
 #[cfg(test)]
@@ -11,12 +12,14 @@ mod tests;
 pub use area::AreaLight;
 pub use constant::ConstantLight;
 pub use directional::DirectionalLight;
+pub use environment::EnvironmentMap;
 pub use point::PointLight;
 pub use spot::SpotLight;
 
 use glam::Vec3;
 
 use super::error::SceneError;
+use super::load::Loader;
 use super::shapes::SurfacePoint;
 use super::xml::Object;
 use super::{Shape, ShapeId};
@@ -24,12 +27,13 @@ use crate::sampling::SolidAnglePdf;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// An emitter of a scene file that stands on its own.
-pub(super) fn load(object: &Object) -> Result<Emitter, SceneError> {
+pub(super) fn load(object: &Object, loader: &Loader) -> Result<Emitter, SceneError> {
     match object.plugin.as_str() {
         "point" => PointLight::load(object).map(Emitter::Point),
         "spot" => SpotLight::load(object).map(Emitter::Spot),
         "directional" => DirectionalLight::load(object).map(Emitter::Directional),
         "constant" => ConstantLight::load(object).map(Emitter::Constant),
+        "envmap" => EnvironmentMap::load(object, loader).map(Emitter::Environment),
         _ => Err(object.unsupported(&SUPPORTED)),
     }
 }
@@ -45,7 +49,7 @@ pub(super) fn load_area(object: &Object, shape: ShapeId) -> Result<AreaLight, Sc
     }
 }
 
-const SUPPORTED: [&str; 5] = ["area", "point", "spot", "directional", "constant"];
+const SUPPORTED: [&str; 6] = ["area", "point", "spot", "directional", "constant", "envmap"];
 
 /// A source of light.
 #[derive(Clone, Debug)]
@@ -60,6 +64,8 @@ pub enum Emitter {
     Directional(DirectionalLight),
     /// `constant`: the same radiance from every direction.
     Constant(ConstantLight),
+    /// `envmap`: an image all around.
+    Environment(EnvironmentMap),
 }
 
 /// Light drawn as seen from a reference point.
@@ -94,6 +100,7 @@ impl Emitter {
             Self::Spot(light) => light.sample::<C>(reference, wavelengths),
             Self::Directional(light) => Some(light.sample::<C>(wavelengths)),
             Self::Constant(light) => Some(light.sample::<C>(wavelengths, u)),
+            Self::Environment(light) => light.sample::<C>(wavelengths, u),
         }
     }
 
@@ -104,7 +111,7 @@ impl Emitter {
 
     /// Whether it is what rays see that leave the scene.
     pub fn surrounds(&self) -> bool {
-        matches!(self, Self::Constant(_))
+        matches!(self, Self::Constant(_) | Self::Environment(_))
     }
 
     /// The radiance that arrives from `direction` (unit, world space, away from the scene) where the light
@@ -112,11 +119,12 @@ impl Emitter {
     #[inline]
     pub fn surrounding_radiance<C: Colour>(
         &self,
-        _direction: Vec3,
+        direction: Vec3,
         wavelengths: &C::Wavelengths,
     ) -> C::Spectrum {
         match self {
             Self::Constant(light) => light.radiance::<C>(wavelengths),
+            Self::Environment(light) => light.radiance::<C>(direction, wavelengths),
             _ => C::Spectrum::ZERO,
         }
     }
@@ -124,9 +132,10 @@ impl Emitter {
     /// The density with which [`Self::sample`] draws `direction` (unit, world space) where the light
     /// [surrounds](Self::surrounds) the scene; 0 for other lights.
     #[inline]
-    pub fn surrounding_pdf(&self, _direction: Vec3) -> SolidAnglePdf {
+    pub fn surrounding_pdf(&self, direction: Vec3) -> SolidAnglePdf {
         match self {
             Self::Constant(light) => light.pdf(),
+            Self::Environment(light) => light.pdf(direction),
             _ => SolidAnglePdf(0.0),
         }
     }

@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 use image::{ColorType, DynamicImage, ImageFormat, ImageReader, Limits};
 
 use super::ImageSize;
+use super::error::SceneError;
+use super::xml::{Document, Object};
 
 /// The most pixels of an image: more would be gigabytes.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -58,6 +60,14 @@ pub struct ImageFileError {
     pub file: PathBuf,
     /// What is wrong with it.
     pub problem: String,
+}
+
+/// The image that the parameter `filename` of `object` names, looked for as the scene says.
+pub(super) fn load(object: &Object, document: &Document) -> Result<ImageFile, SceneError> {
+    const NAME: &str = "filename";
+    let filename = object.string(NAME)?.ok_or_else(|| object.missing(NAME))?;
+    let path = document.resolve(object, NAME, filename)?;
+    ImageFile::read(&path).map_err(|error| object.parameter_error(NAME, error.to_string()))
 }
 
 impl Channels {
@@ -132,10 +142,9 @@ impl ImageFile {
         })
     }
 
-    /// What is wrong with the first pixel that has a number which is infinite or none, in words; `None` where all are
-    /// finite.
-    pub fn find_not_finite(&self) -> Option<String> {
-        let index = self.values.iter().position(|value| !value.is_finite())?;
+    /// The first pixel with a number that does not fit, in words; `None` where all do.
+    pub fn find_unfit(&self, fits: impl Fn(f32) -> bool) -> Option<String> {
+        let index = self.values.iter().position(|&value| !fits(value))?;
         let pixel = index / self.channels.count();
         let width = self.size.width as usize;
         Some(format!(

@@ -225,10 +225,10 @@ fn damage_does_no_harm() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_are_found() {
+fn numbers_that_do_not_fit_are_found() {
     let mut image = read(&encoded(picture(), ImageFormat::Png)).unwrap();
-    assert_eq!(image.find_not_finite(), None);
+    assert_eq!(image.find_unfit(f32::is_finite), None);
     image.values[14] = f32::NAN;
-    let message = image.find_not_finite().unwrap();
+    let message = image.find_unfit(f32::is_finite).unwrap();
     assert_eq!(message, "the pixel in column 1 of row 1 (from 0) is NaN");
 }
