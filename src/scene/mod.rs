@@ -4,6 +4,7 @@ mod bsdfs;
 mod emitters;
 mod error;
 mod image_file;
+mod light_choice;
 mod load;
 pub mod mesh;
 mod sensors;
@@ -18,6 +19,7 @@ pub use emitters::{
 };
 pub use error::{Location, SceneError};
 pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};
+pub use light_choice::{ChosenLight, Cone, LightBounds, LightChoice};
 pub use load::LoadOptions;
 pub use sensors::{
     CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis,

@@ -89,6 +89,11 @@ impl EnvironmentMap {
         })
     }
 
+    /// Whether no light arrives from anywhere.
+    pub fn is_black(&self) -> bool {
+        self.radiance.texels().iter().all(|rgb| *rgb == [0.0; 3])
+    }
+
     /// The radiance that arrives from `direction` (unit, world space).
     #[inline]
     pub fn radiance<C: Colour>(

@@ -13,6 +13,7 @@ use glam::{DMat3, DMat4, Mat3, Vec3};
 
 use super::LightSample;
 use crate::scene::error::SceneError;
+use crate::scene::light_choice::Cone;
 use crate::scene::spectra::{Quantity, spectrum_or};
 use crate::scene::xml::Object;
 use crate::spectrum::{Colour, SpectralCurve};
@@ -78,6 +79,20 @@ impl SpotLight {
             to_local,
             cutoff: Angle::from_degrees(cutoff),
             beam: Angle::from_degrees(beam),
+        })
+    }
+
+    /// The directions in world space into which it shines; `None` where they are no circular cone.
+    pub fn directions(&self) -> Option<Cone> {
+        let local = self.to_local * (1.0 / self.to_local.determinant().abs().cbrt());
+        let deviation = local.transpose() * local - Mat3::IDENTITY;
+        let is_round = deviation
+            .to_cols_array()
+            .iter()
+            .all(|deviation| deviation.abs() < 1e-4);
+        is_round.then(|| Cone {
+            axis: (local.transpose() * Vec3::Z).normalize(),
+            angle: self.cutoff.radians,
         })
     }
 
