@@ -3,7 +3,7 @@
 use glam::Vec3;
 use multiversion::multiversion;
 
-use super::batch::{CameraPaths, ShadowRays, Vertices};
+use super::batch::{CameraPaths, Receiver, ShadowRays, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
 use crate::sampling::{Sampler, Use, power_heuristic};
@@ -15,7 +15,8 @@ const SHADOW_END: f32 = 1.0 - 1e-4;
 
 /// Draws light for every vertex and fills `shadow` with the rays that decide whether it arrives.
 ///
-/// They have been scattered `depth` times before. The emitter is chosen uniformly; a path's contribution is MIS-weighted against hitting the same light by chance.
+/// They have been scattered `depth` times before. The emitter is chosen by what it can contribute; a path's contribution is
+/// MIS-weighted against hitting the same light by chance.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -32,23 +33,28 @@ pub(super) fn sample_lights<C: Colour>(
     shadow.restart(vertices.len());
     for i in 0..vertices.len() {
         let [choice, u, v] = sampler.numbers(vertices.point[i], Use::Light(depth));
-        let chosen = ((choice * emitters.len() as f32) as usize).min(emitters.len() - 1);
+        let Receiver { position, normal } = vertices.receiver(i);
+        let Some(chosen) = engine.light_choice.choose(position, normal, choice) else {
+            continue;
+        };
         let path = vertices.path[i];
-        let position = vertices.position[i];
         let wavelengths = &paths.wavelengths[path as usize];
-        let Some(light) =
-            emitters[chosen].sample::<C>(&engine.scene.shapes, position, wavelengths, [u, v])
-        else {
+        let Some(light) = emitters[chosen.emitter].sample::<C>(
+            &engine.scene.shapes,
+            position,
+            wavelengths,
+            [u, v],
+        ) else {
             continue;
         };
         let incident = vertices.frame[i].to_local(light.direction);
         let bsdf = vertices.bsdf[i].evaluate(vertices.outgoing[i], incident);
         let mis = match light.pdf {
-            Some(pdf) => power_heuristic(pdf.chosen_with(engine.light_choice), bsdf.pdf),
+            Some(pdf) => power_heuristic(pdf.chosen_with(chosen.probability), bsdf.pdf),
             None => 1.0,
         };
         let contribution =
-            vertices.throughput[i] * bsdf.value * light.weight * (mis / engine.light_choice);
+            vertices.throughput[i] * bsdf.value * light.weight * (mis / chosen.probability);
         if contribution.is_black() {
             continue;
         }

@@ -12,7 +12,7 @@ use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_
 use crate::embree::{Coherence, Version};
 use crate::film::{Accumulator, FilmTile, FilterSampler, PixelStatistics, TilePixels};
 use crate::sampling::{Sampler, SamplerKind, StreamKey};
-use crate::scene::{Emitter, Projection, Scene};
+use crate::scene::{Emitter, LightChoice, Projection, Scene};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::{Offspring, Scope, Strategy};
 
@@ -27,10 +27,10 @@ pub struct Engine {
     pub(super) strategy: Box<dyn Strategy>,
     pub(super) projection: Projection,
     pub(super) filter: FilterSampler,
-    /// The probability with which next-event estimation chooses each emitter.
-    pub(super) light_choice: f32,
+    /// How next-event estimation chooses among the emitters.
+    pub(super) light_choice: LightChoice,
     /// Which emitter surrounds the scene; looked up once, for rays that leave the scene ask for it.
-    surroundings: Option<usize>,
+    pub(super) surroundings: Option<usize>,
 }
 
 /// One batch: some samples of every pixel of a tile.
@@ -56,7 +56,7 @@ impl Engine {
             projection: scene.camera.project(scene.film.size),
             filter: FilterSampler::new(&scene.film),
             surroundings: scene.emitters.iter().position(Emitter::surrounds),
-            light_choice: 1.0 / scene.emitters.len().max(1) as f32,
+            light_choice: LightChoice::new(&scene.emitters, &scene.shapes),
             scene,
             accelerator,
             settings,
@@ -77,12 +77,6 @@ impl Engine {
     /// The version of the intersection layer's library.
     pub fn embree_version(&self) -> Version {
         self.accelerator.scene().device().version()
-    }
-
-    /// The light that surrounds the scene, if there is one.
-    #[inline]
-    pub(super) fn surroundings(&self) -> Option<&Emitter> {
-        Some(&self.scene.emitters[self.surroundings?])
     }
 }
 
@@ -215,6 +209,7 @@ impl<C: Colour> Tracer<C> {
                 &mut self.offspring,
             );
             scatter::scatter(
+                engine,
                 &self.vertices,
                 self.offspring.children(),
                 depth,
