@@ -22,8 +22,9 @@ pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};
 pub use light_choice::{ChosenLight, Cone, LightBounds, LightChoice};
 pub use load::LoadOptions;
 pub use sensors::{
-    CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis,
-    ImageSize, Perspective, PixelFormat, Projection, ReconstructionFilter,
+    Camera, CameraError, CameraRay, CameraView, CropWindow, FieldOfView, FilmDescription,
+    FilmError, FovAxis, ImageSize, Orthographic, OrthographicView, Perspective, PinholeView,
+    PixelFormat, ReconstructionFilter, ThinLens, ThinLensView,
 };
 pub(crate) use shapes::{CornerLanes, SurfaceLanes};
 pub use shapes::{
@@ -68,7 +69,7 @@ pub struct Scene {
     /// All emitters.
     pub emitters: Vec<Emitter>,
     /// The camera.
-    pub camera: Perspective,
+    pub camera: Camera,
     /// The film.
     pub film: FilmDescription,
     /// How deep paths go and which are shown.

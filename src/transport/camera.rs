@@ -43,7 +43,7 @@ pub(super) fn start<C: Colour>(
             paths.wavelengths.push(C::sample_wavelengths(wavelength_u));
             paths.radiance.push(C::Spectrum::ZERO);
             paths.filter_weight.push(sample.weight);
-            let ray = engine.projection.ray(centre + sample.offset);
+            let ray = engine.camera.ray(centre + sample.offset, [0.5; 2]);
             segments.push(
                 index as u32,
                 C::Spectrum::ONE,

@@ -12,7 +12,7 @@ use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_
 use crate::embree::{Coherence, Version};
 use crate::film::{Accumulator, FilmTile, FilterSampler, PixelStatistics, TilePixels};
 use crate::sampling::{Sampler, SamplerKind, StreamKey};
-use crate::scene::{Emitter, LightChoice, Projection, Scene};
+use crate::scene::{CameraView, Emitter, LightChoice, Scene};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::{Offspring, Scope, Strategy};
 
@@ -25,7 +25,7 @@ pub struct Engine {
     pub(super) accelerator: Accelerator,
     pub(super) settings: TransportSettings,
     pub(super) strategy: Box<dyn Strategy>,
-    pub(super) projection: Projection,
+    pub(super) camera: CameraView,
     pub(super) filter: FilterSampler,
     /// How next-event estimation chooses among the emitters.
     pub(super) light_choice: LightChoice,
@@ -53,7 +53,7 @@ impl Engine {
         strategy: Box<dyn Strategy>,
     ) -> Self {
         Self {
-            projection: scene.camera.project(scene.film.size),
+            camera: scene.camera.view(scene.film.size),
             filter: FilterSampler::new(&scene.film),
             surroundings: scene.emitters.iter().position(Emitter::surrounds),
             light_choice: LightChoice::new(&scene.emitters, &scene.shapes),
