@@ -4,6 +4,7 @@ mod bsdfs;
 mod emitters;
 mod error;
 mod image_file;
+mod integrators;
 mod light_choice;
 mod load;
 pub mod mesh;
@@ -19,6 +20,7 @@ pub use emitters::{
 };
 pub use error::{Location, SceneError};
 pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};
+pub use integrators::{PathIntegrator, SurfaceSamples};
 pub use light_choice::{ChosenLight, Cone, LightBounds, LightChoice};
 pub use load::LoadOptions;
 pub use sensors::{
@@ -76,27 +78,6 @@ pub struct Scene {
     pub integrator: PathIntegrator,
     /// How many samples are taken.
     pub sampler: IndependentSampler,
-}
-
-/// `path`: what the scene file says of the paths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PathIntegrator {
-    /// Most segments of a path, camera ray included; `None` for no limit. 1 shows emitters only, 2 adds direct light.
-    pub max_depth: Option<u32>,
-    /// From which number of segments on `throughput-roulette` may end a path.
-    pub roulette_depth: u32,
-    /// Whether area lights and surroundings are invisible to the camera.
-    pub hide_emitters: bool,
-}
-
-impl Default for PathIntegrator {
-    fn default() -> Self {
-        Self {
-            max_depth: None,
-            roulette_depth: 5,
-            hide_emitters: false,
-        }
-    }
 }
 
 /// `independent`: what the scene file says of the samples.
