@@ -102,7 +102,12 @@ impl Render {
         let build_time = start.elapsed();
         let transport = TransportSettings {
             max_depth,
-            direct_light: settings.direct_light,
+            direct_light: if scene.integrator.samples.emitters == 0 {
+                DirectLight::Off
+            } else {
+                settings.direct_light
+            },
+            samples: scene.integrator.samples,
             sampler: settings.sampler,
             hide_emitters: scene.integrator.hide_emitters,
         };

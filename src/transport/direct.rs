@@ -1,4 +1,4 @@
-//! Stage: next-event estimation. Every vertex looks at one point of one emitter.
+//! Stage: next-event estimation. Every vertex looks at one point of one emitter, or as many as the integrator says.
 
 use glam::Vec3;
 use multiversion::multiversion;
@@ -30,45 +30,56 @@ pub(super) fn sample_lights<C: Colour>(
     shadow: &mut ShadowRays<C>,
 ) {
     let emitters = &engine.scene.emitters;
-    shadow.restart(vertices.len());
+    let samples = engine.settings.samples;
+    let share = 1.0 / samples.emitters as f32;
+    shadow.restart(vertices.len() * samples.emitters as usize);
     for i in 0..vertices.len() {
-        let [choice, u, v] = sampler.numbers(vertices.point[i], Use::Light(depth));
-        let Receiver { position, normal } = vertices.receiver(i);
-        let Some(chosen) = engine.light_choice.choose(position, normal, choice) else {
-            continue;
-        };
-        let path = vertices.path[i];
-        let wavelengths = &paths.wavelengths[path as usize];
-        let Some(light) = emitters[chosen.emitter].sample::<C>(
-            &engine.scene.shapes,
-            position,
-            wavelengths,
-            [u, v],
-        ) else {
-            continue;
-        };
-        let incident = vertices.frame[i].to_local(light.direction);
-        let bsdf = vertices.bsdf[i].evaluate(vertices.outgoing[i], incident);
-        let mis = match light.pdf {
-            Some(pdf) => power_heuristic(pdf.chosen_with(chosen.probability), bsdf.pdf),
-            None => 1.0,
-        };
-        let contribution =
-            vertices.throughput[i] * bsdf.value * light.weight * (mis / chosen.probability);
-        if contribution.is_black() {
-            continue;
+        for sample in 0..samples.emitters {
+            let point = vertices.point[i].branch(sample, depth);
+            let [choice, u, v] = sampler.numbers(point, Use::Light(depth));
+            let Receiver { position, normal } = vertices.receiver(i);
+            let Some(chosen) = engine.light_choice.choose(position, normal, choice) else {
+                continue;
+            };
+            let path = vertices.path[i];
+            let wavelengths = &paths.wavelengths[path as usize];
+            let Some(light) = emitters[chosen.emitter].sample::<C>(
+                &engine.scene.shapes,
+                position,
+                wavelengths,
+                [u, v],
+            ) else {
+                continue;
+            };
+            let incident = vertices.frame[i].to_local(light.direction);
+            let bsdf = vertices.bsdf[i].evaluate(vertices.outgoing[i], incident);
+            let mis = match light.pdf {
+                Some(pdf) => power_heuristic(
+                    pdf.chosen_with(chosen.probability)
+                        .taken_times(samples.emitters),
+                    bsdf.pdf.taken_times(samples.directions),
+                ),
+                None => 1.0,
+            };
+            let contribution = vertices.throughput[i]
+                * bsdf.value
+                * light.weight
+                * (mis * share / chosen.probability);
+            if contribution.is_black() {
+                continue;
+            }
+            let origin = leave_surface(position, vertices.geometric_normal[i], light.direction);
+            let (direction, length) = towards(position, origin, &light);
+            shadow.rays.set(
+                shadow.path.len(),
+                origin.into(),
+                direction.into(),
+                0.0,
+                length * SHADOW_END,
+            );
+            shadow.path.push(path);
+            shadow.contribution.push(contribution);
         }
-        let origin = leave_surface(position, vertices.geometric_normal[i], light.direction);
-        let (direction, length) = towards(position, origin, &light);
-        shadow.rays.set(
-            shadow.path.len(),
-            origin.into(),
-            direction.into(),
-            0.0,
-            length * SHADOW_END,
-        );
-        shadow.path.push(path);
-        shadow.contribution.push(contribution);
     }
     shadow.rays.resize(shadow.path.len());
 }

@@ -104,6 +104,12 @@ impl Engine {
             }
             None => 1.0,
         };
-        power_heuristic(direction_pdf, light_pdf.chosen_with(chosen_with))
+        let samples = &self.settings.samples;
+        power_heuristic(
+            direction_pdf.taken_times(samples.directions),
+            light_pdf
+                .chosen_with(chosen_with)
+                .taken_times(samples.emitters),
+        )
     }
 }

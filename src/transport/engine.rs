@@ -208,6 +208,10 @@ impl<C: Colour> Tracer<C> {
                 sampler,
                 &mut self.offspring,
             );
+            if engine.settings.samples.directions != 1 {
+                self.offspring
+                    .split_each(engine.settings.samples.directions);
+            }
             scatter::scatter(
                 engine,
                 &self.vertices,
