@@ -62,3 +62,6 @@ pub(super) fn load(object: &Object) -> Result<PathIntegrator, SceneError> {
         _ => Err(object.unsupported(&["path", "direct", "moment"])),
     }
 }
+
+#[cfg(test)]
+mod tests;
