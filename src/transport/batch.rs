@@ -129,6 +129,11 @@ impl<C: Colour> Segments<C> {
         self.rays.resize(count);
     }
 
+    /// Makes room for the surfaces that `count` rays leave.
+    pub fn remember_origins(&mut self, count: usize) {
+        make_room(&mut self.origins, count);
+    }
+
     /// Adds the state of the next ray; the ray itself is set in `rays` at the same index.
     #[inline]
     pub fn push(

@@ -25,6 +25,9 @@ pub(super) fn scatter<C: Colour>(
 ) {
     segments.restart(children.len());
     let light_is_chosen = engine.light_choice.depends_on_surface();
+    if light_is_chosen {
+        segments.remember_origins(children.len());
+    }
     let mut elder_siblings = 0;
     for (i, child) in children.iter().enumerate() {
         let parent = child.parent as usize;
