@@ -1,5 +1,7 @@
 //! Path states as structures of arrays. Buffers are kept between batches: after the first, nothing is allocated.
 
+use glam::Vec3;
+
 use crate::embree::{Hits, Rays};
 use crate::lanes::VectorColumn;
 use crate::room::make_room;
@@ -31,10 +33,21 @@ pub(super) struct Segments<C: Colour> {
     pub point: Vec<SequencePoint>,
     /// The density with which its direction was drawn; infinite for camera rays, which no other technique can draw.
     pub direction_pdf: Vec<SolidAnglePdf>,
+    /// The surface that each left, where next-event estimation chose its light by it; else empty.
+    pub origins: Vec<Receiver>,
     /// The rays themselves, in world space.
     pub rays: Rays,
     /// What they hit.
     pub hits: Hits,
+}
+
+/// A surface to which next-event estimation looks for light.
+#[derive(Clone, Copy)]
+pub(super) struct Receiver {
+    /// Position in world space.
+    pub position: Vec3,
+    /// Unit shading normal in world space, on either side.
+    pub normal: Vec3,
 }
 
 /// Surface points that scatter light.
@@ -99,6 +112,7 @@ impl<C: Colour> Segments<C> {
             throughput: Vec::new(),
             point: Vec::new(),
             direction_pdf: Vec::new(),
+            origins: Vec::new(),
             rays: Rays::default(),
             hits: Hits::default(),
         }
@@ -114,7 +128,13 @@ impl<C: Colour> Segments<C> {
         make_room(&mut self.throughput, count);
         make_room(&mut self.point, count);
         make_room(&mut self.direction_pdf, count);
+        self.origins.clear();
         self.rays.resize(count);
+    }
+
+    /// Makes room for the surfaces that `count` rays leave.
+    pub fn remember_origins(&mut self, count: usize) {
+        make_room(&mut self.origins, count);
     }
 
     /// Adds the state of the next ray; the ray itself is set in `rays` at the same index.
@@ -148,6 +168,15 @@ impl<C: Colour> Vertices<C> {
 
     pub fn len(&self) -> usize {
         self.path.len()
+    }
+
+    /// A vertex as next-event estimation sees it.
+    #[inline(always)]
+    pub fn receiver(&self, i: usize) -> Receiver {
+        Receiver {
+            position: self.position.get(i),
+            normal: self.normal.get(i),
+        }
     }
 
     /// Empties the vertices and makes room for `count`.

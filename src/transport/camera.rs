@@ -23,6 +23,7 @@ pub(super) fn start<C: Colour>(
     paths: &mut CameraPaths<C>,
     segments: &mut Segments<C>,
 ) {
+    let has_lens = engine.camera.has_lens();
     let crop = engine.scene.film.crop;
     let corner = Vec2::new(crop.x as f32, crop.y as f32);
     let count = tile.pixels.count() * job.samples as usize;
@@ -30,6 +31,8 @@ pub(super) fn start<C: Colour>(
     segments.restart(count);
     let mut points = [SequencePoint::default(); CHUNK];
     let mut numbers = [[0.0; CHUNK]; 3];
+    // A pinhole looks at no point of a lens.
+    let mut lens_numbers = [[0.5; CHUNK]; 2];
     let (mut pixel, mut sample) = (0, 0);
     for start in (0..count).step_by(CHUNK) {
         let chunk = start..count.min(start + CHUNK);
@@ -45,7 +48,11 @@ pub(super) fn start<C: Colour>(
             let [u, v, _] = &mut numbers;
             sampler.fill(points, Use::Camera, [u, v]);
         }
+        if has_lens {
+            sampler.fill(points, Use::Lens, lens_numbers.each_mut());
+        }
         let [film_u, film_v, wavelength_u] = &numbers;
+        let [lens_u, lens_v] = &lens_numbers;
         let wavelengths = wavelength_u[..chunk.len()].iter();
         paths
             .wavelengths
@@ -57,7 +64,8 @@ pub(super) fn start<C: Colour>(
             let film = engine.filter.sample(x, y, [film_u[lane], film_v[lane]]);
             paths.filter_weight.push(film.weight);
             let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-            let ray = engine.projection.ray(centre + film.offset);
+            let lens = [lens_u[lane], lens_v[lane]];
+            let ray = engine.camera.ray(centre + film.offset, lens);
             segments.rays.set(
                 path,
                 ray.origin.into(),

@@ -1,4 +1,4 @@
-//! Stage: next-event estimation. Every vertex looks at one point of one emitter.
+//! Stage: next-event estimation. Every vertex looks at one point of one emitter, or as many as the integrator says.
 
 use glam::Vec3;
 use multiversion::multiversion;
@@ -8,8 +8,8 @@ use super::engine::Engine;
 use super::light_chunk::LightChunk;
 use super::offset::leave_surface;
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
-use crate::sampling::{Sampler, SolidAnglePdf, Use, power_heuristic};
-use crate::scene::BsdfValues;
+use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use, power_heuristic};
+use crate::scene::{BsdfValues, SurfaceSamples};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Shadow rays end this share of their length before the light, so that they do not meet it.
@@ -17,7 +17,8 @@ const SHADOW_END: f32 = 1.0 - 1e-4;
 
 /// Draws light for every vertex and fills `shadow` with the rays that decide whether it arrives.
 ///
-/// They have been scattered `depth` times before. The emitter is chosen uniformly; a path's contribution is MIS-weighted against hitting the same light by chance.
+/// They have been scattered `depth` times before. The emitter is chosen by what it can contribute; a path's contribution is
+/// MIS-weighted against hitting the same light by chance.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -30,27 +31,30 @@ pub(super) fn sample_lights<C: Colour>(
     sampler: &mut Sampler,
     shadow: &mut ShadowRays<C>,
 ) {
-    shadow.restart(vertices.len());
+    let samples = engine.settings.samples;
+    shadow.restart(vertices.len() * samples.emitters as usize);
     let mut numbers = [[0.0; CHUNK]; 3];
     let mut positions = VectorLanes::default();
     let mut normals = VectorLanes::default();
     let mut lights = LightChunk::<C>::new();
     let mut bsdfs = BsdfValues::new();
     let mut rays = ShadowChunk::new();
-    for start in (0..vertices.len()).step_by(CHUNK) {
+    let mut points = [SequencePoint::default(); CHUNK];
+    let starts = (0..vertices.len()).step_by(CHUNK);
+    for (sample, start) in (0..samples.emitters).flat_map(|s| starts.clone().map(move |i| (s, i))) {
         let chunk = start..vertices.len().min(start + CHUNK);
-        sampler.fill(
-            &vertices.point[chunk.clone()],
-            Use::Light(depth),
-            numbers.each_mut(),
-        );
+        let points = &mut points[..chunk.len()];
+        for (point, vertex) in points.iter_mut().zip(&vertices.point[chunk.clone()]) {
+            *point = vertex.branch(sample, depth);
+        }
+        sampler.fill(points, Use::Light(depth), numbers.each_mut());
         positions.load(vertices.position.slices(chunk.clone()));
         lights.draw(engine, paths, vertices, chunk.clone(), &positions, &numbers);
         normals.load(vertices.normal.slices(chunk.clone()));
         bsdfs.evaluate(&vertices.bsdf[chunk.clone()], &normals, &lights.direction);
         normals.load(vertices.geometric_normal.slices(chunk.clone()));
         rays.aim(&positions, &normals, &lights);
-        rays.weigh(&lights.pdf, &bsdfs.pdf, engine.light_choice);
+        rays.weigh(&lights.pdf, &lights.probability, &bsdfs.pdf, samples);
 
         let mut kept = KeptLanes::none();
         let mut contributions = [C::Spectrum::ZERO; CHUNK];
@@ -78,7 +82,7 @@ struct ShadowChunk {
     origin: VectorLanes<CHUNK>,
     direction: VectorLanes<CHUNK>,
     far: [f32; CHUNK],
-    /// The MIS weight over the probability with which the emitter was chosen.
+    /// The MIS weight over the number of lights drawn and the probability with which the emitter was chosen.
     weight: [f32; CHUNK],
 }
 
@@ -129,13 +133,25 @@ impl ShadowChunk {
         }
     }
 
-    /// Weighs light that was drawn with `light_pdf`, where the bsdf would have drawn its direction with `bsdf_pdf`.
+    /// Weighs light that was drawn with `light_pdf` from an emitter chosen with `probability`, where the bsdf would have drawn
+    /// its direction with `bsdf_pdf`.
     #[inline(always)]
-    fn weigh(&mut self, light_pdf: &[f32; CHUNK], bsdf_pdf: &[f32; CHUNK], light_choice: f32) {
+    fn weigh(
+        &mut self,
+        light_pdf: &[f32; CHUNK],
+        probability: &[f32; CHUNK],
+        bsdf_pdf: &[f32; CHUNK],
+        samples: SurfaceSamples,
+    ) {
         for i in 0..CHUNK {
-            let light_pdf = SolidAnglePdf(light_pdf[i]).chosen_with(light_choice);
-            let mis = power_heuristic(light_pdf, SolidAnglePdf(bsdf_pdf[i]));
-            self.weight[i] = mis / light_choice;
+            let probability = probability[i];
+            let light_pdf = SolidAnglePdf(light_pdf[i])
+                .chosen_with(probability)
+                .taken_times(samples.emitters);
+            let bsdf_pdf = SolidAnglePdf(bsdf_pdf[i]).taken_times(samples.directions);
+            let weight =
+                power_heuristic(light_pdf, bsdf_pdf) / (samples.emitters as f32 * probability);
+            self.weight[i] = if probability > 0.0 { weight } else { 0.0 };
         }
     }
 

@@ -3,13 +3,13 @@
 use glam::Vec3;
 use multiversion::multiversion;
 
-use super::batch::{CameraPaths, Segments, Vertices};
+use super::batch::{CameraPaths, Receiver, Segments, Vertices};
 use super::engine::Engine;
 use super::settings::DirectLight;
 use super::surface::SurfaceChunk;
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::{SolidAnglePdf, power_heuristic};
-use crate::scene::{Emitter, Side};
+use crate::scene::{Emitter, EmitterId, Side};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
@@ -44,15 +44,18 @@ pub(super) fn arrive<C: Colour>(
             let path = segments.path[i];
             let wavelengths = &paths.wavelengths[path as usize];
             let Some(shape) = surfaces.shapes[lane] else {
-                if let Some(light) = engine.surroundings().filter(|_| !hidden) {
-                    let weight = engine.mis_weight(segments.direction_pdf[i], light.pdf());
-                    let radiance = light.radiance::<C>(wavelengths) * weight;
+                if let Some(emitter) = engine.surroundings.filter(|_| !hidden) {
+                    let light = &engine.scene.emitters[emitter];
+                    let direction = Vec3::from(segments.rays.direction(i));
+                    let light_pdf = light.surrounding_pdf(direction);
+                    let weight = engine.mis_weight(segments, i, emitter, light_pdf);
+                    let radiance = light.surrounding_radiance::<C>(direction, wavelengths) * weight;
                     paths.radiance[path as usize] += segments.throughput[i] * radiance;
                 }
                 continue;
             };
-            if let Some(Emitter::Area(light)) =
-                shape.emitter.map(|id| &engine.scene.emitters[id.index()])
+            if let Some(emitter) = shape.emitter.map(EmitterId::index)
+                && let Emitter::Area(light) = &engine.scene.emitters[emitter]
             {
                 let point = surfaces.points.get(lane);
                 let direction = Vec3::from(segments.rays.direction(i));
@@ -60,7 +63,7 @@ pub(super) fn arrive<C: Colour>(
                 if !radiance.is_black() {
                     let origin = Vec3::from(segments.rays.origin(i));
                     let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
-                    let weight = engine.mis_weight(segments.direction_pdf[i], light_pdf);
+                    let weight = engine.mis_weight(segments, i, emitter, light_pdf);
                     paths.radiance[path as usize] += segments.throughput[i] * (radiance * weight);
                 }
             }
@@ -126,15 +129,32 @@ impl SideChunk {
 }
 
 impl Engine {
-    /// The weight of light found by following a direction drawn with `direction_pdf`, where next-event estimation
-    /// draws the same direction with `light_pdf` once it has chosen that light.
+    /// The weight of light that segment `i` found at `emitter`, where next-event estimation draws the same direction with
+    /// `light_pdf` once it has chosen that emitter.
     #[inline]
-    fn mis_weight(&self, direction_pdf: SolidAnglePdf, light_pdf: SolidAnglePdf) -> f32 {
-        match self.settings.direct_light {
-            DirectLight::NextEvent => {
-                power_heuristic(direction_pdf, light_pdf.chosen_with(self.light_choice))
-            }
-            DirectLight::Off => 1.0,
+    fn mis_weight<C: Colour>(
+        &self,
+        segments: &Segments<C>,
+        i: usize,
+        emitter: usize,
+        light_pdf: SolidAnglePdf,
+    ) -> f32 {
+        let direction_pdf = segments.direction_pdf[i];
+        if self.settings.direct_light == DirectLight::Off || direction_pdf.0 == f32::INFINITY {
+            return 1.0;
         }
+        let chosen_with = match segments.origins.get(i) {
+            Some(&Receiver { position, normal }) => {
+                self.light_choice.probability(position, normal, emitter)
+            }
+            None => 1.0,
+        };
+        let samples = &self.settings.samples;
+        power_heuristic(
+            direction_pdf.taken_times(samples.directions),
+            light_pdf
+                .chosen_with(chosen_with)
+                .taken_times(samples.emitters),
+        )
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::batch::{CameraPaths, Vertices};
+use super::batch::{CameraPaths, Receiver, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
 use crate::lanes::{CHUNK, VectorLanes};
@@ -17,6 +17,8 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 pub(super) struct LightChunk<C: Colour> {
     /// The emitter chosen.
     emitter: [u32; CHUNK],
+    /// The probability of that choice; 0 where no light can arrive.
+    pub probability: [f32; CHUNK],
     lamps: LampLanes,
     /// Unit direction from the vertex to the light, in world space.
     pub direction: VectorLanes<CHUNK>,
@@ -74,6 +76,7 @@ impl<C: Colour> LightChunk<C> {
     pub fn new() -> Self {
         Self {
             emitter: [0; CHUNK],
+            probability: [1.0; CHUNK],
             lamps: LampLanes::new(),
             direction: VectorLanes::default(),
             distance: [0.0; CHUNK],
@@ -97,10 +100,7 @@ impl<C: Colour> LightChunk<C> {
     ) {
         let emitters = &engine.scene.emitters;
         let [choice, u, v] = numbers;
-        let (count, last) = (emitters.len() as f32, emitters.len() as i32 - 1);
-        for (emitter, choice) in self.emitter.iter_mut().zip(choice) {
-            *emitter = ((choice * count) as i32).min(last) as u32;
-        }
+        self.choose(engine, vertices, chunk.clone(), choice);
         // With one lamp, what was chosen is what is there.
         if self.emitter != self.lamps.emitter {
             self.fetch_lamps(engine);
@@ -122,6 +122,32 @@ impl<C: Colour> LightChunk<C> {
                     let sample = emitter.sample::<C>(shapes, position, wavelengths, u);
                     self.put(lane, position, sample.as_ref());
                 }
+            }
+        }
+    }
+
+    /// Chooses an emitter for every vertex of `chunk` from a uniform number each.
+    #[inline(always)]
+    fn choose(
+        &mut self,
+        engine: &Engine,
+        vertices: &Vertices<C>,
+        chunk: Range<usize>,
+        numbers: &[f32; CHUNK],
+    ) {
+        if let Some(only) = engine.light_choice.only() {
+            self.emitter = [only as u32; CHUNK];
+            self.probability = [1.0; CHUNK];
+            return;
+        }
+        for (lane, i) in chunk.enumerate() {
+            let Receiver { position, normal } = vertices.receiver(i);
+            match engine.light_choice.choose(position, normal, numbers[lane]) {
+                Some(chosen) => {
+                    self.emitter[lane] = chosen.emitter as u32;
+                    self.probability[lane] = chosen.probability;
+                }
+                None => self.probability[lane] = 0.0,
             }
         }
     }

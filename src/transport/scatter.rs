@@ -3,6 +3,7 @@
 use multiversion::multiversion;
 
 use super::batch::{Segments, Vertices};
+use super::engine::Engine;
 use super::offset::leave_surface;
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
@@ -17,6 +18,7 @@ use crate::walk::Child;
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
 pub(super) fn scatter<C: Colour>(
+    engine: &Engine,
     vertices: &Vertices<C>,
     children: &[Child],
     depth: u32,
@@ -24,6 +26,10 @@ pub(super) fn scatter<C: Colour>(
     segments: &mut Segments<C>,
 ) {
     segments.restart(children.len());
+    let light_is_chosen = engine.light_choice.depends_on_surface();
+    if light_is_chosen {
+        segments.remember_origins(children.len());
+    }
     let mut elders = ElderSiblings::default();
     let mut points = [SequencePoint::default(); CHUNK];
     let mut numbers = [[0.0; CHUNK]; 2];
@@ -76,7 +82,11 @@ pub(super) fn scatter<C: Colour>(
             .extend(lanes.clone().map(|lane| points[lane]));
         segments
             .direction_pdf
-            .extend(lanes.map(|lane| SolidAnglePdf(samples.pdf[lane])));
+            .extend(lanes.clone().map(|lane| SolidAnglePdf(samples.pdf[lane])));
+        if light_is_chosen {
+            let receivers = lanes.map(|lane| vertices.receiver(parent(lane)));
+            segments.origins.extend(receivers);
+        }
     }
     let count = segments.len();
     segments.rays.resize(count);

@@ -6,6 +6,7 @@ pub mod knot;
 mod normals;
 pub mod obj;
 pub mod ply;
+pub mod serialized;
 mod write;
 
 pub use error::{MeshError, MeshProblem};
