@@ -8,9 +8,12 @@ pub mod mesh;
 mod sensors;
 mod shapes;
 mod spectra;
+mod textures;
 pub mod xml;
 
-pub use bsdfs::{Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Model, Side};
+pub use bsdfs::{
+    Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Null, SeenPoint, Side,
+};
 pub use emitters::{AreaLight, ConstantLight, Emitter, LightSample, PointLight};
 pub use error::{Location, SceneError};
 pub use load::LoadOptions;
@@ -21,8 +24,9 @@ pub use sensors::{
 pub(crate) use shapes::{CornerLanes, SurfaceLanes};
 pub use shapes::{
     Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape, ShapeSample, Sphere,
-    SurfacePoint, TriangleAttributes, Triangles,
+    SurfaceParameters, SurfacePoint, TriangleAttributes, Triangles,
 };
+pub use textures::{Checkerboard, FloatTexture, Pattern, SpectrumTexture};
 
 /// A shape of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use super::engine::Engine;
 use super::settings::DirectLight;
 use super::surface::{CHUNK, SurfaceChunk};
 use crate::sampling::{Frame, SolidAnglePdf, power_heuristic};
-use crate::scene::{Emitter, Side};
+use crate::scene::{Emitter, SeenPoint, Side, SurfaceParameters};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
@@ -65,16 +65,23 @@ pub(super) fn arrive<C: Colour>(
                 continue;
             };
             let material = &engine.scene.materials[shape.material.index()];
-            let Some(bsdf) = material.bsdf::<C>(side, wavelengths) else {
+            let frame = Frame::about(side.facing(point.shading_normal));
+            let seen = SeenPoint {
+                side,
+                frame,
+                outgoing: frame.to_local(-direction),
+                parameters: SurfaceParameters::default(),
+                choice: 0.0,
+            };
+            let Some(bsdf) = material.bsdf::<C>(&seen, wavelengths) else {
                 continue;
             };
-            let frame = Frame::about(side.facing(point.shading_normal));
             vertices.path.push(path);
             vertices.throughput.push(segments.throughput[i]);
             vertices.point.push(segments.point[i]);
             vertices.position.push(point.position);
             vertices.geometric_normal.push(point.geometric_normal);
-            vertices.outgoing.push(frame.to_local(-direction));
+            vertices.outgoing.push(seen.outgoing);
             vertices.frame.push(frame);
             vertices.bsdf.push(bsdf);
         }

@@ -9,6 +9,7 @@ mod disk;
 mod lanes;
 mod mesh_file;
 mod mesh_sampling;
+mod parameters;
 mod rectangle;
 mod sphere;
 mod triangles;
@@ -16,6 +17,7 @@ mod triangles;
 pub use cylinder::{Cylinder, CylinderHit};
 pub use disk::{Disk, DiskHit};
 pub(crate) use lanes::{CornerLanes, SurfaceLanes};
+pub use parameters::SurfaceParameters;
 pub use sphere::Sphere;
 pub use triangles::{TriangleAttributes, Triangles};
 
