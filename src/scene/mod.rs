@@ -12,7 +12,12 @@ mod textures;
 pub mod xml;
 
 pub use bsdfs::{
-    Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Null, SeenPoint, Side,
+    Bsdf, BsdfSample, BsdfValue, CoatedBase, Conductor, ConductorIndex, ConductorMaterial,
+    Dielectric, DielectricMaterial, Diffuse, DiffuseMaterial, Distribution, Indices, Material,
+    Model, Null, Perturbed, Plastic, PlasticMaterial, Principled, PrincipledMaterial,
+    PrincipledThin, PrincipledThinMaterial, RoughConductor, RoughConductorMaterial,
+    RoughDielectric, RoughDielectricMaterial, RoughPlastic, RoughPlasticMaterial, Roughness,
+    SeenPoint, Side, ThinDielectric,
 };
 pub use emitters::{AreaLight, ConstantLight, Emitter, LightSample, PointLight};
 pub use error::{Location, SceneError};
@@ -26,7 +31,7 @@ pub use shapes::{
     Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape, ShapeSample, Sphere,
     SurfaceParameters, SurfacePoint, TriangleAttributes, Triangles,
 };
-pub use textures::{Checkerboard, FloatTexture, Pattern, SpectrumTexture};
+pub use textures::{Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture};
 
 /// A shape of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 
 use super::cie::matching_srgb;
 use super::curve::SpectralCurve;
+use super::reflectances::Reflectances;
 use super::values::{Spectrum, SpectrumArithmetic};
 use super::wavelengths::Wavelengths;
 use std::fmt::Debug;
@@ -23,6 +24,13 @@ pub trait Colour: Copy + Debug + Default + Send + Sync + 'static {
     /// The values of a colour of the scene for a path with `wavelengths`.
     fn evaluate(curve: &SpectralCurve, wavelengths: &Self::Wavelengths) -> Self::Spectrum;
 
+    /// The values of one of many reflectances for a path with `wavelengths`.
+    fn evaluate_entry(
+        table: &Reflectances,
+        entry: usize,
+        wavelengths: &Self::Wavelengths,
+    ) -> Self::Spectrum;
+
     /// The linear sRGB colour of a path's radiance: an unbiased estimate over the choice of the wavelengths, with
     /// components that may be negative.
     fn to_rgb(radiance: Self::Spectrum, wavelengths: &Self::Wavelengths) -> [f32; 3];
@@ -43,6 +51,11 @@ impl Colour for Rgb {
     #[inline(always)]
     fn evaluate(curve: &SpectralCurve, _wavelengths: &()) -> Spectrum<3> {
         Spectrum(curve.rgb())
+    }
+
+    #[inline]
+    fn evaluate_entry(table: &Reflectances, entry: usize, _wavelengths: &()) -> Spectrum<3> {
+        Spectrum(table.rgb(entry))
     }
 
     #[inline]
@@ -68,6 +81,15 @@ impl<const N: usize> Colour for Spectral<N> {
     #[inline(always)]
     fn evaluate(curve: &SpectralCurve, wavelengths: &Wavelengths<N>) -> Spectrum<N> {
         curve.evaluate(wavelengths)
+    }
+
+    #[inline]
+    fn evaluate_entry(
+        table: &Reflectances,
+        entry: usize,
+        wavelengths: &Wavelengths<N>,
+    ) -> Spectrum<N> {
+        table.evaluate(entry, wavelengths)
     }
 
     #[inline]

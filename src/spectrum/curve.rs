@@ -1,7 +1,8 @@
 //! The colours of a scene, each as a function of the wavelength and as linear sRGB.
 
 use super::cie::{
-    ILLUMINANT_E, illuminant_d65, srgb_of_emission, srgb_of_reflectance, srgb_under_d65,
+    ILLUMINANT_E, WAVELENGTH_MAX, WAVELENGTH_MIN, illuminant_d65, srgb_of_emission,
+    srgb_of_reflectance, srgb_under_d65,
 };
 use super::error::{CurveError, Place};
 use super::piecewise_linear::PiecewiseLinear;
@@ -232,6 +233,18 @@ impl SpectralCurve {
                 self.rgb == [0.0; 3]
             }
         }
+    }
+
+    /// Whether it is the same at all wavelengths.
+    pub fn is_constant(&self) -> bool {
+        matches!(self.shape, Shape::Constant(_))
+    }
+
+    /// Whether it is above zero at every wavelength that paths carry.
+    pub fn is_positive_in_light(&self) -> bool {
+        let nanometres = WAVELENGTH_MIN as u16..=WAVELENGTH_MAX as u16;
+        let mut values = nanometres.map(|nm| self.evaluate(&Wavelengths::at([f32::from(nm)]))[0]);
+        values.all(|value| value > 0.0)
     }
 
     /// The values at `wavelengths`.

@@ -44,8 +44,7 @@ impl<const N: usize> Wavelengths<N> {
     }
 
     /// Chosen wavelengths, in nm, with densities of 1 per nm.
-    #[cfg(test)]
-    pub(super) fn at(nm: [f32; N]) -> Self {
+    pub(crate) fn at(nm: [f32; N]) -> Self {
         Self { nm, pdf: [1.0; N] }
     }
 

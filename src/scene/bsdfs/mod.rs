@@ -10,28 +10,88 @@
 //! its z is negative behind the surface, in transmission. Values are those of radiance: they include the scaling by the squared
 //! relative index with which radiance is compressed where it is refracted.
 
+mod blend;
+mod bump_map;
+mod conductor;
+mod conductor_materials;
+mod dielectric;
 mod diffuse;
+mod fresnel;
+mod index;
+mod mask;
 mod material;
+mod microfacet;
+mod normal_map;
 mod null;
+mod perturbed;
+mod plastic;
+mod principled;
+mod rough_coating;
+mod rough_conductor;
+mod rough_dielectric;
+mod rough_plastic;
+mod roughness;
+mod sellmeier;
 mod side;
+mod thin_dielectric;
 mod twosided;
 
+pub use conductor::{Conductor, ConductorMaterial};
+pub use conductor_materials::ConductorIndex;
+pub use dielectric::{Dielectric, DielectricMaterial};
 pub use diffuse::{Diffuse, DiffuseMaterial};
+pub use index::Indices;
 pub(super) use material::load;
 pub use material::{Material, SeenPoint};
+pub use microfacet::Distribution;
 pub use null::Null;
+pub use perturbed::Perturbed;
+pub use plastic::{CoatedBase, Plastic, PlasticMaterial};
+pub use principled::{Principled, PrincipledMaterial, PrincipledThin, PrincipledThinMaterial};
+pub use rough_conductor::{RoughConductor, RoughConductorMaterial};
+pub use rough_dielectric::{RoughDielectric, RoughDielectricMaterial};
+pub use rough_plastic::{RoughPlastic, RoughPlasticMaterial};
+pub use roughness::Roughness;
 pub use side::Side;
+pub use thin_dielectric::ThinDielectric;
 
 use glam::Vec3;
 
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SpectrumArithmetic;
 
-/// A scattering model of one side of a surface at the wavelengths of one path.
+/// How one side of a surface scatters light at the wavelengths of one path.
 #[derive(Clone, Copy, Debug)]
 pub enum Bsdf<S> {
+    /// By a model in the shading frame.
+    Plain(Model<S>),
+    /// By a model in a frame of its own, that of a bump or a normal map.
+    Perturbed(Perturbed<S>),
+}
+
+/// A scattering model with its parameters.
+#[derive(Clone, Copy, Debug)]
+pub enum Model<S> {
     /// Lambertian reflection.
     Diffuse(Diffuse<S>),
+    /// A smooth metal.
+    Conductor(Conductor<S>),
+    /// A rough metal.
+    RoughConductor(RoughConductor<S>),
+    /// A smooth interface.
+    Dielectric(Dielectric<S>),
+    /// A rough interface.
+    RoughDielectric(RoughDielectric<S>),
+    /// A thin pane.
+    ThinDielectric(ThinDielectric<S>),
+    /// A diffuse base under a smooth coating.
+    Plastic(Plastic<S>),
+    /// A diffuse base under a rough coating.
+    RoughPlastic(RoughPlastic<S>),
+    /// The surface of a solid, a mixture of many lobes.
+    Principled(Principled<S>),
+    /// A sheet, a mixture of many lobes.
+    PrincipledThin(PrincipledThin<S>),
     /// Nothing: light passes.
     Null(Null),
 }
@@ -100,6 +160,18 @@ impl<S: SpectrumArithmetic> BsdfSample<S> {
         }
     }
 
+    /// A direction drawn with the density that `value` states.
+    #[inline]
+    pub(super) fn of_value(incident: Vec3, value: BsdfValue<S>) -> Self {
+        if !(value.pdf.0 > 0.0 && value.pdf.0.is_finite()) {
+            return Self::failed();
+        }
+        Self {
+            is_dispersive: value.is_dispersive,
+            ..Self::smooth(incident, value.value / value.pdf.0, value.pdf.0)
+        }
+    }
+
     /// The direction of a discrete lobe, not refracted.
     #[inline]
     pub(super) fn discrete(incident: Vec3, weight: S) -> Self {
@@ -107,12 +179,40 @@ impl<S: SpectrumArithmetic> BsdfSample<S> {
     }
 }
 
-/// Calls a method of the model that a bsdf is.
+/// The shininess of lobes that scatter the given shares of the light: the one whose 1 / (s + 1), the spread that
+/// go-with-the-winners asks for, is the mean of theirs.
+pub(super) fn mixed_shininess<const N: usize>(shares: [f32; N], shininess: [f32; N]) -> f32 {
+    let spread = |i: usize| shares[i] / (shininess[i] + 1.0);
+    let mean = (0..N).map(spread).sum::<f32>() / shares.iter().sum::<f32>();
+    // Not-a-number, where nothing is scattered, is not below 1.
+    if mean < 1.0 { 1.0 / mean - 1.0 } else { 0.0 }
+}
+
+/// Calls a method of the model that a bsdf has, in whichever frame.
+macro_rules! dispatch_frame {
+    ($bsdf:expr, $model:ident => $call:expr) => {
+        match $bsdf {
+            Bsdf::Plain($model) => $call,
+            Bsdf::Perturbed($model) => $call,
+        }
+    };
+}
+
+/// Calls a method of a model.
 macro_rules! dispatch {
     ($bsdf:expr, $model:ident => $call:expr) => {
         match $bsdf {
-            Bsdf::Diffuse($model) => $call,
-            Bsdf::Null($model) => $call,
+            Model::Diffuse($model) => $call,
+            Model::Conductor($model) => $call,
+            Model::RoughConductor($model) => $call,
+            Model::Dielectric($model) => $call,
+            Model::RoughDielectric($model) => $call,
+            Model::ThinDielectric($model) => $call,
+            Model::Plastic($model) => $call,
+            Model::RoughPlastic($model) => $call,
+            Model::Principled($model) => $call,
+            Model::PrincipledThin($model) => $call,
+            Model::Null($model) => $call,
         }
     };
 }
@@ -123,31 +223,61 @@ impl<S: SpectrumArithmetic> Bsdf<S> {
     /// an approximation that is positive wherever the model scatters; strategies use it to distribute their particles.
     #[inline]
     pub fn albedo(&self, outgoing: Vec3) -> S {
-        dispatch!(self, model => model.albedo(outgoing))
+        dispatch_frame!(self, model => model.albedo(outgoing))
     }
 
     /// The shininess that go-with-the-winners asks for: 0 for a perfectly diffuse surface, infinite for a mirror. For rough
     /// surfaces it is the exponent of the Phong lobe that is as wide (Walter et al. 2007, section 5.2: 2/alpha^2 - 2).
     #[inline]
     pub fn shininess(&self, outgoing: Vec3) -> f32 {
-        dispatch!(self, model => model.shininess(outgoing))
+        dispatch_frame!(self, model => model.shininess(outgoing))
     }
 
     /// Whether light from directions other than a few discrete ones is scattered: only then next-event estimation can find any.
     #[inline]
     pub fn has_smooth_lobe(&self) -> bool {
-        dispatch!(self, model => model.has_smooth_lobe())
+        dispatch_frame!(self, model => model.has_smooth_lobe())
     }
 
     /// The smooth lobes and their sampling density for a pair of directions.
     #[inline]
     pub fn evaluate(&self, outgoing: Vec3, incident: Vec3) -> BsdfValue<S> {
-        dispatch!(self, model => model.evaluate(outgoing, incident))
+        dispatch_frame!(self, model => model.evaluate(outgoing, incident))
     }
 
     /// Draws an incident direction from the uniform numbers `u` in [0, 1); the third chooses among lobes.
     #[inline]
     pub fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
+        dispatch_frame!(self, model => model.sample(outgoing, u))
+    }
+}
+
+impl<S: SpectrumArithmetic> Model<S> {
+    #[inline]
+    fn albedo(&self, outgoing: Vec3) -> S {
+        dispatch!(self, model => model.albedo(outgoing))
+    }
+
+    #[inline]
+    fn shininess(&self, outgoing: Vec3) -> f32 {
+        dispatch!(self, model => model.shininess(outgoing))
+    }
+
+    #[inline]
+    fn has_smooth_lobe(&self) -> bool {
+        dispatch!(self, model => model.has_smooth_lobe())
+    }
+
+    #[inline]
+    fn evaluate(&self, outgoing: Vec3, incident: Vec3) -> BsdfValue<S> {
+        dispatch!(self, model => model.evaluate(outgoing, incident))
+    }
+
+    #[inline]
+    fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
         dispatch!(self, model => model.sample(outgoing, u))
     }
 }
+
+#[cfg(test)]
+mod tests;

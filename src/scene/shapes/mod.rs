@@ -220,6 +220,16 @@ impl Geometry {
         }
     }
 
+    /// Where the point `point` of a hit lies on the shape.
+    pub fn parameters(&self, hit: &HitCoordinates, point: &SurfacePoint) -> SurfaceParameters {
+        match self {
+            Self::Triangles(shape) => shape.parameters(hit, point),
+            Self::Sphere(shape) => shape.parameters(point),
+            Self::Disk(shape) => shape.parameters(hit, point),
+            Self::Cylinder(shape) => shape.parameters(hit, point),
+        }
+    }
+
     /// Draws a point of the shape as seen from `reference` (world space).
     #[inline(always)]
     pub fn sample(&self, reference: Vec3, u: [f32; 2]) -> ShapeSample {

@@ -5,8 +5,10 @@
 //! | `color0` | spectrum or texture | colour of the squares at the origin and diagonally from it | 0.4 |
 //! | `color1` | spectrum or texture | colour of the others | 0.2 |
 //! | `to_uv` | transform | applied to the texture coordinates first | identity |
+//!
+//! Where it stands for a number, such as an opacity, the colours are exchanged, as in Mitsuba.
 
-use glam::Affine2;
+use glam::{Affine2, Vec2};
 
 use super::{SpectrumTexture, TextureLoader};
 use crate::scene::error::SceneError;
@@ -35,9 +37,19 @@ impl Checkerboard {
 
     /// The colour of the square that a point lies in.
     pub(super) fn square(&self, point: &SurfaceParameters) -> &SpectrumTexture {
+        &self.colours[usize::from(self.is_odd(point))]
+    }
+
+    /// The other colour, which Mitsuba has there where it asks for a number and not for a colour.
+    pub(super) fn other_square(&self, point: &SurfaceParameters) -> &SpectrumTexture {
+        &self.colours[usize::from(!self.is_odd(point))]
+    }
+
+    /// Whether the square of a point is one of the second colour.
+    fn is_odd(&self, point: &SurfaceParameters) -> bool {
         let uv = self.to_uv.transform_point2(point.uv);
-        let beyond_half = (uv - uv.floor()).cmpgt(glam::Vec2::splat(0.5));
-        &self.colours[usize::from(beyond_half.x != beyond_half.y)]
+        let beyond_half = (uv - uv.floor()).cmpgt(Vec2::splat(0.5));
+        beyond_half.x != beyond_half.y
     }
 
     pub(super) fn mean(&self) -> f32 {

@@ -3,9 +3,12 @@
 //! A parameter is a [`SpectrumTexture`] where it is a colour and a [`FloatTexture`] where it is a number; both are uniform
 //! or show a [`Pattern`].
 
+mod bitmap;
 mod checkerboard;
+mod image_file;
 mod loader;
 
+pub use bitmap::Bitmap;
 pub use checkerboard::Checkerboard;
 pub(super) use loader::TextureLoader;
 
@@ -33,6 +36,8 @@ pub enum FloatTexture {
 /// What varies over a surface.
 #[derive(Clone, Debug)]
 pub enum Pattern {
+    /// `bitmap`
+    Bitmap(Bitmap),
     /// `checkerboard`
     Checkerboard(Box<Checkerboard>),
 }
@@ -59,10 +64,18 @@ impl SpectrumTexture {
         }
     }
 
-    /// The mean luminance.
+    /// The colour at `point` as linear sRGB.
+    pub fn rgb(&self, point: &SurfaceParameters) -> [f32; 3] {
+        match self {
+            Self::Uniform(curve) => curve.rgb(),
+            Self::Varying(pattern) => pattern.rgb(point),
+        }
+    }
+
+    /// The mean over points and channels, about.
     pub fn mean(&self) -> f32 {
         match self {
-            Self::Uniform(curve) => luminance(curve.rgb()),
+            Self::Uniform(curve) => curve.rgb().iter().sum::<f32>() / 3.0,
             Self::Varying(pattern) => pattern.mean(),
         }
     }
@@ -96,18 +109,28 @@ impl Pattern {
         wavelengths: &C::Wavelengths,
     ) -> C::Spectrum {
         match self {
+            Self::Bitmap(bitmap) => bitmap.spectrum::<C>(point.uv, wavelengths),
             Self::Checkerboard(board) => board.square(point).spectrum::<C>(point, wavelengths),
         }
     }
 
     fn number(&self, point: &SurfaceParameters) -> f32 {
         match self {
-            Self::Checkerboard(board) => board.square(point).number(point),
+            Self::Bitmap(bitmap) => bitmap.number(point.uv),
+            Self::Checkerboard(board) => board.other_square(point).number(point),
+        }
+    }
+
+    fn rgb(&self, point: &SurfaceParameters) -> [f32; 3] {
+        match self {
+            Self::Bitmap(bitmap) => bitmap.rgb(point.uv),
+            Self::Checkerboard(board) => board.square(point).rgb(point),
         }
     }
 
     fn mean(&self) -> f32 {
         match self {
+            Self::Bitmap(bitmap) => bitmap.mean(),
             Self::Checkerboard(board) => board.mean(),
         }
     }
@@ -117,3 +140,6 @@ impl Pattern {
 pub(super) fn luminance(rgb: [f32; 3]) -> f32 {
     0.212_671 * rgb[0] + 0.715_160 * rgb[1] + 0.072_169 * rgb[2]
 }
+
+#[cfg(test)]
+mod tests;
