@@ -31,6 +31,9 @@ pub(super) fn sample_lights<C: Colour>(
     let emitters = &engine.scene.emitters;
     shadow.restart(vertices.len());
     for i in 0..vertices.len() {
+        if !vertices.bsdf[i].has_smooth_lobe() {
+            continue;
+        }
         let [choice, u, v] = sampler.numbers(vertices.point[i], Use::Light(depth));
         let chosen = ((choice * emitters.len() as f32) as usize).min(emitters.len() - 1);
         let path = vertices.path[i];
@@ -47,8 +50,12 @@ pub(super) fn sample_lights<C: Colour>(
             Some(pdf) => power_heuristic(pdf.chosen_with(engine.light_choice), bsdf.pdf),
             None => 1.0,
         };
-        let contribution =
-            vertices.throughput[i] * bsdf.value * light.weight * (mis / engine.light_choice);
+        let throughput = if bsdf.is_dispersive && !vertices.is_single[i] {
+            vertices.throughput[i].only_hero()
+        } else {
+            vertices.throughput[i]
+        };
+        let contribution = throughput * bsdf.value * light.weight * (mis / engine.light_choice);
         if contribution.is_black() {
             continue;
         }
