@@ -27,7 +27,7 @@ fn limits(name: &str) -> (f32, f32) {
         (1.4, 0.5)
     } else if is("normalmap") || is("bumpmap") {
         // Tilted frames lose what would go through the surface, and win.
-        (1.4, 0.6)
+        (1.4, 1.0)
     } else if is("plastic") {
         // What the base sends out is taken as the average over all directions.
         (1.01, 0.06)
@@ -147,7 +147,7 @@ proptest! {
             let return_way = other.evaluate(b, down(a)).value / a.z;
             let compression = if behind { eta(&one, direction(0.99, 0.0)).powi(2) } else { 1.0 };
             for (&f, &r) in (forth * compression).components().iter().zip(return_way.components()) {
-                prop_assert!((f - r).abs() <= 2e-3 * f.max(r) + 1e-6, "{}: {f} {r}", case.name);
+                prop_assert!((f - r).abs() <= 3e-3 * f.max(r) + 1e-5, "{}: {f} {r}", case.name);
             }
         }
     }
