@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::embree::{Hits, Rays};
 use crate::room::make_room;
 use crate::sampling::{Frame, SequencePoint, SolidAnglePdf};
-use crate::scene::Bsdf;
+use crate::scene::{Bsdf, HitCoordinates};
 use crate::spectrum::Colour;
 
 /// The camera paths of a batch: what all particles that descend from one have in common. Paths of one pixel stand side
@@ -27,6 +27,8 @@ pub(super) struct Segments<C: Colour> {
     pub throughput: Vec<C::Spectrum>,
     /// Where the particle stands in its sequence of random numbers.
     pub point: Vec<SequencePoint>,
+    /// Whether only the hero wavelength is left: it was refracted apart from the others.
+    pub is_single: Vec<bool>,
     /// The density with which its direction was drawn; infinite for camera rays, which no other technique can draw.
     pub direction_pdf: Vec<SolidAnglePdf>,
     /// The surface that each left, where next-event estimation chose its light by it; else empty.
@@ -54,6 +56,8 @@ pub(super) struct Vertices<C: Colour> {
     pub throughput: Vec<C::Spectrum>,
     /// Where the particle stands in its sequence of random numbers.
     pub point: Vec<SequencePoint>,
+    /// Whether only the hero wavelength is left.
+    pub is_single: Vec<bool>,
     /// Position in world space.
     pub position: Vec<Vec3>,
     /// Unit geometric normal in world space.
@@ -108,6 +112,7 @@ impl<C: Colour> Segments<C> {
             path: Vec::new(),
             throughput: Vec::new(),
             point: Vec::new(),
+            is_single: Vec::new(),
             direction_pdf: Vec::new(),
             origins: Vec::new(),
             rays: Rays::default(),
@@ -124,6 +129,7 @@ impl<C: Colour> Segments<C> {
         make_room(&mut self.path, count);
         make_room(&mut self.throughput, count);
         make_room(&mut self.point, count);
+        make_room(&mut self.is_single, count);
         make_room(&mut self.direction_pdf, count);
         self.origins.clear();
         self.rays.resize(count);
@@ -134,6 +140,18 @@ impl<C: Colour> Segments<C> {
         make_room(&mut self.origins, count);
     }
 
+    /// Where a ray met its shape, if it met one.
+    #[inline]
+    pub fn hit(&self, index: usize) -> HitCoordinates {
+        let [u, v] = self.hits.uv(index);
+        HitCoordinates {
+            primitive: self.hits.primitive_id(index),
+            u,
+            v,
+            normal: self.hits.normal(index).into(),
+        }
+    }
+
     /// Adds the state of the next ray; the ray itself is set in `rays` at the same index.
     #[inline]
     pub fn push(
@@ -141,11 +159,13 @@ impl<C: Colour> Segments<C> {
         path: u32,
         throughput: C::Spectrum,
         point: SequencePoint,
+        is_single: bool,
         direction_pdf: SolidAnglePdf,
     ) {
         self.path.push(path);
         self.throughput.push(throughput);
         self.point.push(point);
+        self.is_single.push(is_single);
         self.direction_pdf.push(direction_pdf);
     }
 }
@@ -156,6 +176,7 @@ impl<C: Colour> Vertices<C> {
             path: Vec::new(),
             throughput: Vec::new(),
             point: Vec::new(),
+            is_single: Vec::new(),
             position: Vec::new(),
             geometric_normal: Vec::new(),
             frame: Vec::new(),
@@ -182,6 +203,7 @@ impl<C: Colour> Vertices<C> {
         make_room(&mut self.path, count);
         make_room(&mut self.throughput, count);
         make_room(&mut self.point, count);
+        make_room(&mut self.is_single, count);
         make_room(&mut self.position, count);
         make_room(&mut self.geometric_normal, count);
         make_room(&mut self.frame, count);

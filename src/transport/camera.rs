@@ -54,6 +54,7 @@ pub(super) fn start<C: Colour>(
                 index as u32,
                 C::Spectrum::ONE,
                 point,
+                false,
                 SolidAnglePdf(f32::INFINITY),
             );
             segments.rays.set(

@@ -34,6 +34,9 @@ pub(super) fn sample_lights<C: Colour>(
     let share = 1.0 / samples.emitters as f32;
     shadow.restart(vertices.len() * samples.emitters as usize);
     for i in 0..vertices.len() {
+        if !vertices.bsdf[i].has_smooth_lobe() {
+            continue;
+        }
         for sample in 0..samples.emitters {
             let point = vertices.point[i].branch(sample, depth);
             let [choice, u, v] = sampler.numbers(point, Use::Light(depth));
@@ -61,10 +64,13 @@ pub(super) fn sample_lights<C: Colour>(
                 ),
                 None => 1.0,
             };
-            let contribution = vertices.throughput[i]
-                * bsdf.value
-                * light.weight
-                * (mis * share / chosen.probability);
+            let throughput = if bsdf.is_dispersive && !vertices.is_single[i] {
+                vertices.throughput[i].only_hero()
+            } else {
+                vertices.throughput[i]
+            };
+            let contribution =
+                throughput * bsdf.value * light.weight * (mis * share / chosen.probability);
             if contribution.is_black() {
                 continue;
             }

@@ -7,14 +7,14 @@ use super::batch::{CameraPaths, Receiver, Segments, Vertices};
 use super::engine::Engine;
 use super::settings::DirectLight;
 use super::surface::{CHUNK, SurfaceChunk};
-use crate::sampling::{Frame, SolidAnglePdf, power_heuristic};
-use crate::scene::{Emitter, EmitterId, Side};
+use crate::sampling::{Frame, Sampler, SolidAnglePdf, power_heuristic};
+use crate::scene::{Emitter, EmitterId, SeenPoint, Side, SurfaceParameters};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
 /// those that met a surface which scatters light, in the order of the segments.
 ///
-/// `camera_rays` says whether the segments come from the camera; `scatters` is false at the last depth, where paths end.
+/// The segments have been scattered `depth` times before; `scatters` is false at the last depth, where paths end.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -24,9 +24,11 @@ pub(super) fn arrive<C: Colour>(
     paths: &mut CameraPaths<C>,
     segments: &Segments<C>,
     vertices: &mut Vertices<C>,
-    camera_rays: bool,
+    sampler: &mut Sampler,
+    depth: u32,
     scatters: bool,
 ) {
+    let camera_rays = depth == 0;
     vertices.restart(segments.len());
     let hidden = camera_rays && engine.settings.hide_emitters;
     let mut surfaces = SurfaceChunk::default();
@@ -67,16 +69,41 @@ pub(super) fn arrive<C: Colour>(
                 continue;
             };
             let material = &engine.scene.materials[shape.material.index()];
-            let Some(bsdf) = material.bsdf::<C>(side, wavelengths) else {
+            let facing = side.facing(point.shading_normal);
+            let (frame, front, parameters) = if material.needs_parameters() {
+                let parameters = shape.geometry.parameters(&segments.hit(i), &point);
+                let front = parameters.shading_frame(point.shading_normal);
+                let frame = Frame {
+                    normal: facing,
+                    ..front
+                };
+                (frame, front, parameters)
+            } else {
+                let frame = Frame::about(facing);
+                (frame, frame, SurfaceParameters::default())
+            };
+            let choice = if material.is_mixed() {
+                sampler.material_choice(segments.point[i], depth)
+            } else {
+                0.0
+            };
+            let seen = SeenPoint {
+                side,
+                frame: front,
+                outgoing: frame.to_local(-direction),
+                parameters,
+                choice,
+            };
+            let Some(bsdf) = material.bsdf::<C>(&seen, wavelengths) else {
                 continue;
             };
-            let frame = Frame::about(side.facing(point.shading_normal));
             vertices.path.push(path);
             vertices.throughput.push(segments.throughput[i]);
             vertices.point.push(segments.point[i]);
+            vertices.is_single.push(segments.is_single[i]);
             vertices.position.push(point.position);
             vertices.geometric_normal.push(point.geometric_normal);
-            vertices.outgoing.push(frame.to_local(-direction));
+            vertices.outgoing.push(seen.outgoing);
             vertices.frame.push(frame);
             vertices.bsdf.push(bsdf);
         }

@@ -179,7 +179,8 @@ impl<C: Colour> Tracer<C> {
                 &mut self.paths,
                 &self.segments,
                 &mut self.vertices,
-                camera_rays,
+                sampler,
+                depth,
                 scatters,
             );
             self.statistics.vertices += self.vertices.len() as u64;

@@ -36,9 +36,13 @@ pub(super) fn scatter<C: Colour>(
         let point = vertices.point[parent].branch(elder_siblings, depth);
         let u = sampler.numbers(point, Use::Direction(depth));
         let sample = vertices.bsdf[parent].sample(vertices.outgoing[parent], u);
-        let throughput = vertices.throughput[parent] * sample.weight * child.weight;
+        let mut throughput = vertices.throughput[parent] * sample.weight * child.weight;
         if throughput.is_black() {
             continue;
+        }
+        let was_single = vertices.is_single[parent];
+        if sample.is_dispersive && !was_single {
+            throughput = throughput.only_hero();
         }
         let direction = vertices.frame[parent].to_world(sample.incident);
         let normal = vertices.geometric_normal[parent];
@@ -50,7 +54,14 @@ pub(super) fn scatter<C: Colour>(
             0.0,
             f32::INFINITY,
         );
-        segments.push(vertices.path[parent], throughput, point, sample.pdf);
+        let is_single = was_single || sample.is_dispersive;
+        segments.push(
+            vertices.path[parent],
+            throughput,
+            point,
+            is_single,
+            sample.pdf,
+        );
         if light_is_chosen {
             segments.origins.push(vertices.receiver(parent));
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::batch::Segments;
 use super::engine::Engine;
-use crate::scene::{CornerLanes, Geometry, HitCoordinates, SurfaceLanes, SurfacePoint};
+use crate::scene::{CornerLanes, Geometry, SurfaceLanes, SurfacePoint};
 use crate::spectrum::Colour;
 
 /// Hits whose surface points are found together: all of their memory fits the first-level cache.
@@ -82,13 +82,7 @@ impl SurfaceChunk {
                 continue;
             };
             if !matches!(geometry, Geometry::Triangles(_)) {
-                let [u, v] = segments.hits.uv(i);
-                let point = geometry.surface(&HitCoordinates {
-                    primitive: segments.hits.primitive_id(i),
-                    u,
-                    v,
-                    normal: segments.hits.normal(i).into(),
-                });
+                let point = geometry.surface(&segments.hit(i));
                 self.points.set(lane, &point);
             }
         }

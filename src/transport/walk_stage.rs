@@ -30,12 +30,13 @@ pub(super) fn decide<C: Colour>(
             .iter()
             .map(|&throughput| scalar(throughput)),
     );
+    let scattering = || vertices.bsdf.iter().zip(&vertices.outgoing);
     particles
         .albedo
-        .extend(vertices.bsdf.iter().map(|bsdf| scalar(bsdf.albedo())));
+        .extend(scattering().map(|(bsdf, &outgoing)| scalar(bsdf.albedo(outgoing))));
     particles
         .shininess
-        .extend(vertices.bsdf.iter().map(|bsdf| bsdf.shininess()));
+        .extend(scattering().map(|(bsdf, &outgoing)| bsdf.shininess(outgoing)));
     let group_of = |path: u32| match scope {
         Scope::Particle | Scope::CameraPath => path,
         Scope::Pixel => path / samples,

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::lanes::{CornerLanes, SurfaceLanes};
 use super::mesh_sampling::MeshSampling;
-use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfacePoint};
+use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfaceParameters, SurfacePoint};
 use crate::embree::{IndexBuffer, VertexBuffer};
+use crate::sampling::Frame;
 use crate::scene::error::SceneError;
 use crate::scene::mesh::{self, MeshData};
 use crate::scene::xml::Object;
@@ -28,6 +29,8 @@ pub struct Triangles {
 pub struct TriangleAttributes {
     /// Unit vertex normals in world space; without them the mesh is shaded flat.
     pub normals: Option<Vec<Vec3>>,
+    /// Texture coordinates of the vertices.
+    pub uvs: Option<Vec<[f32; 2]>>,
     /// Whether the clockwise side of the triangles is the outer one.
     pub flip_normals: bool,
 }
@@ -90,6 +93,7 @@ impl Triangles {
         };
         let attributes = TriangleAttributes {
             normals: normals.filter(|normals| !are_flat(&mesh, normals)),
+            uvs: mesh.uvs.take(),
             flip_normals: placement.flip_normals,
         };
         let positions = Arc::new(VertexBuffer::new(mesh.positions));
@@ -151,6 +155,46 @@ impl Triangles {
         self.fetch(self.corners(triangle), &mut corners, 0);
         corners.interpolate(&[u], &[v], &mut points);
         points.get(0)
+    }
+
+    /// Where a hit lies in the texture coordinates of the vertices; without them, its barycentric coordinates.
+    pub(super) fn parameters(
+        &self,
+        hit: &HitCoordinates,
+        point: &SurfacePoint,
+    ) -> SurfaceParameters {
+        let corners = self.corners(hit.primitive).map(|i| i as usize);
+        let [a, b, c] = corners.map(|i| Vec3::from(self.positions[i]));
+        let (ab, ac) = (b - a, c - a);
+        let geometric_normal = point.geometric_normal;
+        let Some(uvs) = &self.attributes.uvs else {
+            return SurfaceParameters {
+                uv: Vec2::new(hit.u, hit.v),
+                dp_du: ab,
+                dp_dv: ac,
+                geometric_normal,
+            };
+        };
+        let [uv_a, uv_b, uv_c] = corners.map(|i| Vec2::from(uvs[i]));
+        let (uv_ab, uv_ac) = (uv_b - uv_a, uv_c - uv_a);
+        let uv = uv_a + uv_ab * hit.u + uv_ac * hit.v;
+        let determinant = uv_ab.perp_dot(uv_ac);
+        let (dp_du, dp_dv) = if determinant == 0.0 {
+            // The coordinates say nothing of directions.
+            let frame = Frame::about(geometric_normal);
+            (frame.tangent, frame.bitangent)
+        } else {
+            (
+                (ab * uv_ac.y - ac * uv_ab.y) / determinant,
+                (ac * uv_ab.x - ab * uv_ac.x) / determinant,
+            )
+        };
+        SurfaceParameters {
+            uv,
+            dp_du,
+            dp_dv,
+            geometric_normal,
+        }
     }
 
     /// The vertices of a triangle. Together with [`Self::fetch`] and [`CornerLanes::interpolate`] this is [`Self::point`]
