@@ -73,6 +73,9 @@ impl Case {
             "octahedron.obj",
             "tent.obj",
             "sky.pfm",
+            "colours.png",
+            "heights.png",
+            "normals.png",
         ];
         names
             .map(|name| files::of_project(&format!("tests/scenes/{name}")))
@@ -190,6 +193,13 @@ cases! {
         "camera" ["shift_x" = "0.1", "crop_x" = "20", "crop_width" = "33", "crop_y" = "4", "crop_height" = "30"];
     near_and_far_clip: "camera" ["near" = "6.2", "far" = "8"];
     hidden_surroundings: "camera" ["hide" = "true"];
+
+    metals_and_glass: "metals-and-glass";
+    metals_and_glass_in_wavelengths: "metals-and-glass" in_wavelengths;
+    plastics: "plastics";
+    plastics_in_wavelengths: "plastics" in_wavelengths;
+    textures: "textures";
+    textures_in_wavelengths: "textures" in_wavelengths;
 
     colours: "colours";
     colours_in_wavelengths: "colours" in_wavelengths;

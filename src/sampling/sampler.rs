@@ -73,7 +73,8 @@ pub enum Use {
 }
 
 impl Use {
-    /// Its four dimensions in a sequence; the fourth of the light's is that of the walk's [`decision`].
+    /// Its four dimensions in a sequence; the fourth of the light's is that of the walk's [`decision`], the fourth of the
+    /// direction's that of the [material](Sampler::material_choice).
     fn dimensions(self) -> u32 {
         match self {
             Self::Camera => 0,
@@ -158,6 +159,15 @@ impl Sampler {
         }
     }
 
+    /// A number in \[0, 1) with which the particle at `point` draws one of the materials that are mixed where it arrives after
+    /// `depth` reflections.
+    pub fn material_choice(&mut self, point: SequencePoint, depth: u32) -> f32 {
+        match self.kind {
+            SamplerKind::Independent => self.stream.uniform(),
+            SamplerKind::Sobol => point.coordinate(Use::Direction(depth).dimensions(), 3),
+        }
+    }
+
     /// The stream of independent numbers.
     pub fn stream(&mut self) -> &mut RandomStream {
         &mut self.stream
@@ -213,6 +223,7 @@ mod tests {
         for depth in 0..2 {
             let bits = decision(point, depth, sampler.stream());
             all.push((bits >> 9) as f32 / (1 << COORDINATE_BITS) as f32);
+            all.push(sampler.material_choice(point, depth));
         }
         for (index, one) in all.iter().enumerate() {
             assert!(!all[..index].contains(one), "{index}");

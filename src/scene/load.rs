@@ -9,6 +9,7 @@ use super::emitters::{self, Emitter};
 use super::error::SceneError;
 use super::integrators::{self, PathIntegrator};
 use super::shapes::{self, Geometry, Shape};
+use super::textures::TextureLoader;
 use super::xml::{self, Class, Document, Object, SceneSource};
 use super::{EmitterId, IndependentSampler, MaterialId, Scene, ShapeId, sensors};
 
@@ -71,6 +72,7 @@ impl Scene {
 /// What is built up while the objects of a file are loaded.
 pub(super) struct Loader<'d> {
     pub document: &'d Document,
+    textures: TextureLoader<'d>,
     shapes: Vec<Shape>,
     materials: Vec<Material>,
     emitters: Vec<Emitter>,
@@ -84,6 +86,7 @@ impl<'d> Loader<'d> {
     fn new(document: &'d Document) -> Self {
         Self {
             document,
+            textures: TextureLoader::new(document),
             shapes: Vec::new(),
             materials: Vec::new(),
             emitters: Vec::new(),
@@ -148,7 +151,7 @@ impl<'d> Loader<'d> {
         if let Some(&known) = self.known_materials.get(&Arc::as_ptr(object)) {
             return Ok(known);
         }
-        let material = bsdfs::load(object)?;
+        let material = bsdfs::load(object, &mut self.textures)?;
         let id = self.add_material(material);
         self.known_materials.insert(Arc::as_ptr(object), id);
         Ok(id)

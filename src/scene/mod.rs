@@ -11,9 +11,17 @@ pub mod mesh;
 mod sensors;
 mod shapes;
 mod spectra;
+mod textures;
 pub mod xml;
 
-pub use bsdfs::{Bsdf, BsdfSample, BsdfValue, Diffuse, DiffuseMaterial, Material, Model, Side};
+pub use bsdfs::{
+    Bsdf, BsdfSample, BsdfValue, CoatedBase, Conductor, ConductorIndex, ConductorMaterial,
+    Dielectric, DielectricMaterial, Diffuse, DiffuseMaterial, Distribution, Indices, Material,
+    Model, Null, Perturbed, Plastic, PlasticMaterial, Principled, PrincipledMaterial,
+    PrincipledThin, PrincipledThinMaterial, RoughConductor, RoughConductorMaterial,
+    RoughDielectric, RoughDielectricMaterial, RoughPlastic, RoughPlasticMaterial, Roughness,
+    SeenPoint, Side, ThinDielectric,
+};
 pub(crate) use bsdfs::{BsdfSamples, BsdfValues};
 pub use emitters::{
     AreaLight, ConstantLight, DirectionalLight, Emitter, EnvironmentMap, LightSample, PointLight,
@@ -32,8 +40,9 @@ pub use sensors::{
 pub(crate) use shapes::{CornerLanes, Parallelogram, SurfaceLanes};
 pub use shapes::{
     Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape, ShapeSample, Sphere,
-    SurfacePoint, TriangleAttributes, Triangles,
+    SurfaceParameters, SurfacePoint, TriangleAttributes, Triangles,
 };
+pub use textures::{Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture};
 
 /// A shape of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,7 @@
 //! Colours in scene files.
 
+use std::sync::Arc;
+
 use super::error::SceneError;
 use super::xml::{Object, SpectrumProperty};
 use crate::spectrum::{CurveError, SpectralCurve};
@@ -11,6 +13,8 @@ pub(super) enum Quantity {
     Reflectance,
     /// Radiance, intensity and the like.
     Emission,
+    /// An index of refraction or absorption of a conductor.
+    Index,
 }
 
 /// The colour that `object` has under `name`, or `None` if it has none.
@@ -22,18 +26,34 @@ pub(super) fn spectrum(
     let Some(property) = object.spectrum(name)? else {
         return Ok(None);
     };
-    let curve = match property {
-        SpectrumProperty::Texture(texture) => return Err(texture.unsupported(&[])),
+    match stated(property, quantity) {
+        Stated::Texture(texture) => Err(texture.unsupported(&[])),
+        Stated::Curve(curve) => curve
+            .map(Some)
+            .map_err(|error| object.parameter_error(name, format!("`{name}`: {error}"))),
+    }
+}
+
+/// What a colour of a scene file states.
+pub(super) enum Stated {
+    /// One colour, or what is wrong with it.
+    Curve(Result<SpectralCurve, CurveError>),
+    /// A texture.
+    Texture(Arc<Object>),
+}
+
+/// What `property` states as a colour of `quantity`.
+pub(super) fn stated(property: SpectrumProperty, quantity: Quantity) -> Stated {
+    Stated::Curve(match property {
+        SpectrumProperty::Texture(texture) => return Stated::Texture(texture),
         SpectrumProperty::Number(value) => number(value as f32, quantity),
-        SpectrumProperty::Constant(value) => match quantity {
-            Quantity::Reflectance => SpectralCurve::constant_reflectance(value as f32),
-            Quantity::Emission => SpectralCurve::constant_emission(value as f32),
-        },
+        SpectrumProperty::Constant(value) => constant(value as f32, quantity),
         SpectrumProperty::Rgb(rgb) => {
             let rgb = rgb.map(|value| value as f32);
             match quantity {
                 Quantity::Reflectance => SpectralCurve::rgb_reflectance(rgb),
                 Quantity::Emission => SpectralCurve::rgb_emission(rgb),
+                Quantity::Index => SpectralCurve::rgb_index(rgb),
             }
         }
         SpectrumProperty::List(list) => {
@@ -44,20 +64,26 @@ pub(super) fn spectrum(
             match quantity {
                 Quantity::Reflectance => SpectralCurve::tabulated_reflectance(&list),
                 Quantity::Emission => SpectralCurve::tabulated_emission(&list),
+                Quantity::Index => SpectralCurve::tabulated_index(&list),
             }
         }
-    };
-    curve
-        .map(Some)
-        .map_err(|error| object.parameter_error(name, format!("`{name}`: {error}")))
+    })
+}
+
+fn constant(value: f32, quantity: Quantity) -> Result<SpectralCurve, CurveError> {
+    match quantity {
+        Quantity::Reflectance => SpectralCurve::constant_reflectance(value),
+        Quantity::Emission => SpectralCurve::constant_emission(value),
+        Quantity::Index => SpectralCurve::constant_index(value),
+    }
 }
 
 /// What a plain number means: as in Mitsuba, a number for an emission is the white of sRGB (D65) of that luminance,
 /// unlike a constant `<spectrum>`, whose colour is a little warmer.
-fn number(value: f32, quantity: Quantity) -> Result<SpectralCurve, CurveError> {
+pub(super) fn number(value: f32, quantity: Quantity) -> Result<SpectralCurve, CurveError> {
     match quantity {
-        Quantity::Reflectance => SpectralCurve::constant_reflectance(value),
         Quantity::Emission => SpectralCurve::rgb_emission([value; 3]),
+        Quantity::Reflectance | Quantity::Index => constant(value, quantity),
     }
 }
 

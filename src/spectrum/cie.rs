@@ -109,8 +109,12 @@ pub(super) fn srgb_of_emission(value: impl Fn(f32) -> f32) -> [f32; 3] {
 
 /// Linear sRGB of the reflectance `value` (over the wavelength in nm) under D65, limited to [0, 1].
 pub(super) fn srgb_of_reflectance(value: impl Fn(f32) -> f32) -> [f32; 3] {
+    srgb_under_d65(value).map(|channel| channel.clamp(0.0, 1.0) as f32)
+}
+
+/// Unbounded linear sRGB of the reflectance `value` (over the wavelength in nm) under D65.
+pub(super) fn srgb_under_d65(value: impl Fn(f32) -> f32) -> [f64; 3] {
     sum_srgb(|nm| f64::from(value(nm)) * f64::from(illuminant_d65(nm)))
-        .map(|channel| channel.clamp(0.0, 1.0) as f32)
 }
 
 #[cfg(test)]

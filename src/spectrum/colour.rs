@@ -3,6 +3,7 @@
 use super::cie::matching_srgb;
 use super::curve::SpectralCurve;
 use super::emission_image::{BetweenTexels, EmissionImage};
+use super::reflectances::Reflectances;
 use super::values::{Spectrum, SpectrumArithmetic};
 use super::wavelengths::Wavelengths;
 use std::fmt::Debug;
@@ -28,6 +29,13 @@ pub trait Colour: Copy + Debug + Default + Send + Sync + 'static {
     fn evaluate_emission(
         image: &EmissionImage,
         at: &BetweenTexels,
+        wavelengths: &Self::Wavelengths,
+    ) -> Self::Spectrum;
+
+    /// The values of one of many reflectances for a path with `wavelengths`.
+    fn evaluate_entry(
+        table: &Reflectances,
+        entry: usize,
         wavelengths: &Self::Wavelengths,
     ) -> Self::Spectrum;
 
@@ -63,6 +71,11 @@ impl Colour for Rgb {
     }
 
     #[inline]
+    fn evaluate_entry(table: &Reflectances, entry: usize, _wavelengths: &()) -> Spectrum<3> {
+        Spectrum(table.rgb(entry))
+    }
+
+    #[inline]
     fn to_rgb(radiance: Spectrum<3>, _wavelengths: &()) -> [f32; 3] {
         radiance.0
     }
@@ -94,6 +107,15 @@ impl<const N: usize> Colour for Spectral<N> {
         wavelengths: &Wavelengths<N>,
     ) -> Spectrum<N> {
         image.spectrum(at, wavelengths)
+    }
+
+    #[inline]
+    fn evaluate_entry(
+        table: &Reflectances,
+        entry: usize,
+        wavelengths: &Wavelengths<N>,
+    ) -> Spectrum<N> {
+        table.evaluate(entry, wavelengths)
     }
 
     #[inline]

@@ -1,13 +1,16 @@
 //! The colours of a scene, each as a function of the wavelength and as linear sRGB.
 
-use super::cie::{ILLUMINANT_E, illuminant_d65, srgb_of_emission, srgb_of_reflectance};
+use super::cie::{
+    ILLUMINANT_E, WAVELENGTH_MAX, WAVELENGTH_MIN, illuminant_d65, srgb_of_emission,
+    srgb_of_reflectance, srgb_under_d65,
+};
 use super::error::{CurveError, Place};
 use super::piecewise_linear::PiecewiseLinear;
 use super::upsampling::SigmoidPolynomial;
 use super::values::Spectrum;
 use super::wavelengths::Wavelengths;
 
-/// A reflectance or an emission (radiance, radiant intensity, irradiance) of the scene.
+/// A reflectance, an emission (radiance, radiant intensity, irradiance) or an optical index of the scene.
 ///
 /// It holds the form that spectral rendering needs and the one for rendering in three channels. Both follow
 /// Mitsuba 3: the same scene has the same colours there.
@@ -26,6 +29,11 @@ enum Shape {
     Tabulated(PiecewiseLinear),
     /// A colour of a surface.
     Sigmoid(SigmoidPolynomial),
+    /// A quantity without an upper bound: a colour multiplied by `scale`.
+    ScaledSigmoid {
+        colour: SigmoidPolynomial,
+        scale: f32,
+    },
     /// A colour of a lamp: D65 filtered by a colour and multiplied by `scale`.
     FilteredD65 {
         filter: SigmoidPolynomial,
@@ -35,6 +43,12 @@ enum Shape {
 
 /// The greatest emission: far above all that is real, and far from the overflow of `f32`.
 const MAX_EMISSION: f32 = 1e30;
+
+/// The greatest index of refraction or absorption: far above all that is real.
+const MAX_INDEX: f32 = 1e6;
+
+/// The sodium D line, at which indices of refraction are told, in nm.
+const SODIUM_D: f32 = 589.3;
 
 impl SpectralCurve {
     /// Nothing at any wavelength.
@@ -133,6 +147,77 @@ impl SpectralCurve {
         })
     }
 
+    /// The same index, of refraction or of absorption, at all wavelengths and in all channels.
+    ///
+    /// # Errors
+    /// An `index` that is negative, greater than 1e6 or not a number.
+    pub fn constant_index(index: f32) -> Result<Self, CurveError> {
+        check_index(index, Place::Everywhere)?;
+        Ok(Self {
+            rgb: [index; 3],
+            shape: Shape::Constant(index),
+        })
+    }
+
+    /// A measured index of a conductor by its `entries` (wavelength in nm, index) in the order of increasing wavelength:
+    /// linear between them and zero outside their range. Its three channels are those of its colour under D65.
+    ///
+    /// # Errors
+    /// Fewer than two entries, wavelengths that are not positive and increasing, an index that is negative, greater than
+    /// 1e6 or not a number.
+    pub fn tabulated_index(entries: &[(f32, f32)]) -> Result<Self, CurveError> {
+        let table = PiecewiseLinear::new(entries, check_index)?;
+        Ok(Self {
+            rgb: srgb_under_d65(|nm| table.at(nm)).map(|channel| channel.max(0.0) as f32),
+            shape: Shape::Tabulated(table),
+        })
+    }
+
+    /// As [`Self::tabulated_index`], but its three channels are those of its colour under the illuminant E: Mitsuba's
+    /// meaning of its tables of materials.
+    ///
+    /// # Errors
+    /// As [`Self::tabulated_index`].
+    pub fn material_index(entries: &[(f32, f32)]) -> Result<Self, CurveError> {
+        let table = PiecewiseLinear::new(entries, check_index)?;
+        Ok(Self {
+            rgb: srgb_of_emission(|nm| table.at(nm)),
+            shape: Shape::Tabulated(table),
+        })
+    }
+
+    /// An index of a conductor in three channels; by wavelength, a smooth spectrum of that colour.
+    ///
+    /// # Errors
+    /// A component that is negative, greater than 1e6 or not a number.
+    pub fn rgb_index(rgb: [f32; 3]) -> Result<Self, CurveError> {
+        for (channel, value) in rgb.into_iter().enumerate() {
+            check_index(value, Place::Channel(channel))?;
+        }
+        let scale = 2.0 * rgb.into_iter().fold(0.0, f32::max);
+        let shape = match rgb {
+            [r, g, b] if r == g && g == b => Shape::Constant(r),
+            _ => Shape::ScaledSigmoid {
+                colour: SigmoidPolynomial::fit(rgb.map(|channel| (channel / scale).min(0.5))),
+                scale,
+            },
+        };
+        Ok(Self { rgb, shape })
+    }
+
+    /// The index of refraction of a glass by its `entries`, as [`Self::tabulated_index`]. In three channels it is the one at
+    /// the sodium D line in all of them: only single wavelengths can be refracted apart.
+    ///
+    /// # Errors
+    /// As [`Self::tabulated_index`].
+    pub fn glass_index(entries: &[(f32, f32)]) -> Result<Self, CurveError> {
+        let table = PiecewiseLinear::new(entries, check_index)?;
+        Ok(Self {
+            rgb: [table.at(SODIUM_D); 3],
+            shape: Shape::Tabulated(table),
+        })
+    }
+
     /// The colour as linear sRGB.
     #[inline]
     pub fn rgb(&self) -> [f32; 3] {
@@ -144,8 +229,22 @@ impl SpectralCurve {
         match &self.shape {
             Shape::Constant(value) => *value == 0.0,
             Shape::Tabulated(table) => table.is_zero(),
-            Shape::Sigmoid(_) | Shape::FilteredD65 { .. } => self.rgb == [0.0; 3],
+            Shape::Sigmoid(_) | Shape::ScaledSigmoid { .. } | Shape::FilteredD65 { .. } => {
+                self.rgb == [0.0; 3]
+            }
         }
+    }
+
+    /// Whether it is the same at all wavelengths.
+    pub fn is_constant(&self) -> bool {
+        matches!(self.shape, Shape::Constant(_))
+    }
+
+    /// Whether it is above zero at every wavelength that paths carry.
+    pub fn is_positive_in_light(&self) -> bool {
+        let nanometres = WAVELENGTH_MIN as u16..=WAVELENGTH_MAX as u16;
+        let mut values = nanometres.map(|nm| self.evaluate(&Wavelengths::at([f32::from(nm)]))[0]);
+        values.all(|value| value > 0.0)
     }
 
     /// The values at `wavelengths`.
@@ -167,6 +266,11 @@ impl SpectralCurve {
                     values[i] = reflectance.at(nm[i]);
                 }
             }
+            Shape::ScaledSigmoid { colour, scale } => {
+                for i in 0..N {
+                    values[i] = scale * colour.at(nm[i]);
+                }
+            }
             Shape::FilteredD65 { filter, scale } => {
                 for i in 0..N {
                     values[i] = scale * filter.at(nm[i]) * illuminant_d65(nm[i]);
@@ -183,6 +287,15 @@ fn check_reflectance(value: f32, place: Place) -> Result<(), CurveError> {
         Ok(())
     } else {
         Err(CurveError::InvalidReflectance { value, place })
+    }
+}
+
+/// Refuses what is not an index of refraction or absorption; `place` tells the user where it stands.
+fn check_index(value: f32, place: Place) -> Result<(), CurveError> {
+    if (0.0..=MAX_INDEX).contains(&value) {
+        Ok(())
+    } else {
+        Err(CurveError::InvalidIndex { value, place })
     }
 }
 
@@ -252,6 +365,28 @@ mod tests {
         let emission = SpectralCurve::tabulated_emission(&regular).unwrap();
         assert_close(emission.rgb(), [20.7108, 10.8546, 2.77115], 5e-5);
         assert_close(values(&emission), [0.8, 6.4, 11.8, 17.0], 1e-5);
+    }
+
+    #[test]
+    fn indices_have_mitsubas_channels() {
+        // mi.load_string('<bsdf version="3.0.0" type="conductor"><spectrum name="eta" value="…"/></bsdf>'), scalar_rgb
+        let table = [(400.0, 1.3), (500.0, 2.0), (700.0, 0.7)];
+        let index = SpectralCurve::tabulated_index(&table).unwrap();
+        assert_close(index.rgb(), [1.03118, 1.7723, 1.67554], 1e-5);
+        assert_close(values(&index), [1.37, 1.86, 1.675, 1.025], 1e-5);
+        let material = SpectralCurve::material_index(&table).unwrap();
+        assert_eq!(values(&material), values(&index));
+        let glass = SpectralCurve::glass_index(&table).unwrap();
+        assert_close(glass.rgb(), [1.41955; 3], 1e-5);
+        assert_eq!(values(&glass), values(&index));
+        assert_eq!(
+            values(&SpectralCurve::constant_index(2.5).unwrap()),
+            [2.5; 4]
+        );
+        assert_eq!(
+            SpectralCurve::constant_index(-1.0).unwrap_err().to_string(),
+            "index -1 is not a number from 0 to 1e6"
+        );
     }
 
     #[test]

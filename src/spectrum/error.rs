@@ -43,6 +43,14 @@ pub enum CurveError {
         /// Where in the colour it stands.
         place: Place,
     },
+    /// An index of refraction or absorption that is negative or not a number of reasonable size.
+    #[error("index {value}{place} is not a number from 0 to 1e6")]
+    InvalidIndex {
+        /// The value given.
+        value: f32,
+        /// Where in the colour it stands.
+        place: Place,
+    },
     /// An emission that is negative or not a number of reasonable size.
     #[error("emission {value}{place} is not a number from 0 to 1e30")]
     InvalidEmission {

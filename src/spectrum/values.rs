@@ -47,6 +47,19 @@ pub trait SpectrumArithmetic:
     /// The components.
     fn components(&self) -> &[f32];
 
+    /// The first component: of the hero wavelength, where components are wavelengths.
+    fn hero(self) -> f32;
+
+    /// The first component alone, multiplied by their number, and zero in the others: what a path carries on that goes
+    /// where only its hero wavelength goes (Wilkie et al. 2014, "Hero wavelength spectral sampling", section 3.2).
+    fn only_hero(self) -> Self;
+
+    /// `f` of every component.
+    fn map(self, f: impl Fn(f32) -> f32) -> Self;
+
+    /// `f` of every component and that of `other`.
+    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self;
+
     /// The largest component. Not-a-number components are passed over.
     fn max_component(self) -> f32;
 
@@ -73,6 +86,28 @@ impl<const N: usize> SpectrumArithmetic for Spectrum<N> {
     #[inline]
     fn components(&self) -> &[f32] {
         &self.0
+    }
+
+    #[inline]
+    fn hero(self) -> f32 {
+        self.0[0]
+    }
+
+    #[inline]
+    fn only_hero(self) -> Self {
+        let mut alone = [0.0; N];
+        alone[0] = self.0[0] * N as f32;
+        Self(alone)
+    }
+
+    #[inline(always)]
+    fn map(self, f: impl Fn(f32) -> f32) -> Self {
+        Self(self.0.map(f))
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
     }
 
     #[inline]
@@ -212,6 +247,14 @@ mod tests {
         assert_eq!(a.max_component(), 6.0);
         assert_eq!(a.mean(), 3.0);
         assert_eq!(Spectrum([-3.0, -1.0]).max_component(), -1.0);
+        assert_eq!(a.hero(), 1.0);
+        assert_eq!(a.only_hero(), Spectrum([3.0, 0.0, 0.0]));
+        assert_eq!(a.only_hero().mean(), a.hero());
+        assert_eq!(a.map(|v| v * v), Spectrum([1.0, 4.0, 36.0]));
+        assert_eq!(
+            a.zip(Spectrum([1.0, 5.0, 2.0]), f32::max),
+            Spectrum([1.0, 5.0, 6.0])
+        );
         assert!(Spectrum::<4>::ZERO.is_black() && !Spectrum([0.0, 1e-30]).is_black());
         assert!(a.is_finite() && !Spectrum([0.0, f32::NAN]).is_finite());
         assert!(!Spectrum([f32::INFINITY, 0.0]).is_finite());

@@ -44,7 +44,6 @@ impl<const N: usize> Wavelengths<N> {
     }
 
     /// Chosen wavelengths, in nm, with densities of 1 per nm.
-    #[cfg(test)]
     pub(crate) fn at(nm: [f32; N]) -> Self {
         Self { nm, pdf: [1.0; N] }
     }

@@ -2,11 +2,12 @@
 
 use glam::Vec3;
 
+use super::variant::Variant;
 use crate::embree::{Hits, Rays};
 use crate::lanes::VectorColumn;
 use crate::room::make_room;
 use crate::sampling::{SequencePoint, SolidAnglePdf};
-use crate::scene::Bsdf;
+use crate::scene::HitCoordinates;
 use crate::spectrum::Colour;
 
 /// The camera paths of a batch: what all particles that descend from one have in common. Paths of one pixel stand side
@@ -31,6 +32,8 @@ pub(super) struct Segments<C: Colour> {
     pub throughput: Vec<C::Spectrum>,
     /// Where the particle stands in its sequence of random numbers.
     pub point: Vec<SequencePoint>,
+    /// Whether only the hero wavelength is left: it was refracted apart from the others. Empty in variants that do not disperse.
+    pub is_single: Vec<bool>,
     /// The density with which its direction was drawn; infinite for camera rays, which no other technique can draw.
     pub direction_pdf: Vec<SolidAnglePdf>,
     /// The surface that each left, where next-event estimation chose its light by it; else empty.
@@ -51,7 +54,7 @@ pub(super) struct Receiver {
 }
 
 /// Surface points that scatter light.
-pub(super) struct Vertices<C: Colour> {
+pub(super) struct Vertices<C: Colour, V: Variant> {
     /// The camera path that each descends from; nondecreasing.
     pub path: Vec<u32>,
     /// Throughput on arrival.
@@ -64,8 +67,8 @@ pub(super) struct Vertices<C: Colour> {
     pub geometric_normal: VectorColumn,
     /// Unit shading normal of the side that was hit, in world space.
     pub normal: VectorColumn,
-    /// The bsdf of that side at the path's wavelengths.
-    pub bsdf: Vec<Bsdf<C::Spectrum>>,
+    /// How that side scatters light at the path's wavelengths.
+    pub bsdf: Vec<V::Scattering<C::Spectrum>>,
 }
 
 /// Rays that ask whether light arrives.
@@ -111,6 +114,7 @@ impl<C: Colour> Segments<C> {
             path: Vec::new(),
             throughput: Vec::new(),
             point: Vec::new(),
+            is_single: Vec::new(),
             direction_pdf: Vec::new(),
             origins: Vec::new(),
             rays: Rays::default(),
@@ -127,6 +131,7 @@ impl<C: Colour> Segments<C> {
         make_room(&mut self.path, count);
         make_room(&mut self.throughput, count);
         make_room(&mut self.point, count);
+        make_room(&mut self.is_single, count);
         make_room(&mut self.direction_pdf, count);
         self.origins.clear();
         self.rays.resize(count);
@@ -135,6 +140,18 @@ impl<C: Colour> Segments<C> {
     /// Makes room for the surfaces that `count` rays leave.
     pub fn remember_origins(&mut self, count: usize) {
         make_room(&mut self.origins, count);
+    }
+
+    /// Where a ray met its shape, if it met one.
+    #[inline]
+    pub fn hit(&self, index: usize) -> HitCoordinates {
+        let [u, v] = self.hits.uv(index);
+        HitCoordinates {
+            primitive: self.hits.primitive_id(index),
+            u,
+            v,
+            normal: self.hits.normal(index).into(),
+        }
     }
 
     /// Adds the state of the next ray; the ray itself is set in `rays` at the same index.
@@ -153,7 +170,7 @@ impl<C: Colour> Segments<C> {
     }
 }
 
-impl<C: Colour> Vertices<C> {
+impl<C: Colour, V: Variant> Vertices<C, V> {
     pub fn new() -> Self {
         Self {
             path: Vec::new(),

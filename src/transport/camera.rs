@@ -5,6 +5,7 @@ use multiversion::multiversion;
 
 use super::batch::{CameraPaths, Segments};
 use super::engine::{Engine, TileJob};
+use super::variant::Variant;
 use crate::film::FilmTile;
 use crate::lanes::CHUNK;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
@@ -15,7 +16,7 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-pub(super) fn start<C: Colour>(
+pub(super) fn start<C: Colour, V: Variant>(
     engine: &Engine,
     job: &TileJob,
     tile: &FilmTile,
@@ -80,6 +81,9 @@ pub(super) fn start<C: Colour>(
                 SolidAnglePdf(f32::INFINITY),
             );
         }
+    }
+    if V::DISPERSES {
+        segments.is_single.resize(count, false);
     }
     paths.radiance.resize(count, C::Spectrum::ZERO);
     engine.emission.prepare(paths);

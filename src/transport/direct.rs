@@ -7,6 +7,7 @@ use super::batch::{CameraPaths, ShadowRays, Vertices};
 use super::engine::Engine;
 use super::light_chunk::LightChunk;
 use super::offset::leave_surface;
+use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use, power_heuristic};
 use crate::scene::{BsdfValues, SurfaceSamples};
@@ -23,10 +24,10 @@ const SHADOW_END: f32 = 1.0 - 1e-4;
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-pub(super) fn sample_lights<C: Colour>(
+pub(super) fn sample_lights<C: Colour, V: Variant>(
     engine: &Engine,
     paths: &CameraPaths<C>,
-    vertices: &Vertices<C>,
+    vertices: &Vertices<C, V>,
     depth: u32,
     sampler: &mut Sampler,
     shadow: &mut ShadowRays<C>,
@@ -51,7 +52,12 @@ pub(super) fn sample_lights<C: Colour>(
         positions.load(vertices.position.slices(chunk.clone()));
         lights.draw(engine, paths, vertices, chunk.clone(), &positions, &numbers);
         normals.load(vertices.normal.slices(chunk.clone()));
-        bsdfs.evaluate(&vertices.bsdf[chunk.clone()], &normals, &lights.direction);
+        V::Scattering::evaluate(
+            &vertices.bsdf[chunk.clone()],
+            &normals,
+            &lights.direction,
+            &mut bsdfs,
+        );
         normals.load(vertices.geometric_normal.slices(chunk.clone()));
         rays.aim(&positions, &normals, &lights);
         rays.weigh(&lights.pdf, &lights.probability, &bsdfs.pdf, samples);
@@ -64,7 +70,11 @@ pub(super) fn sample_lights<C: Colour>(
                 * lights.weight[lane]
                 * rays.weight[lane];
             contributions[lane] = contribution;
-            kept.add_if(lane, !contribution.is_black());
+            // Where no light was drawn, the rest means nothing.
+            kept.add_if(
+                lane,
+                !contribution.is_black() & !lights.weight[lane].is_black(),
+            );
         }
         rays.append(&kept, shadow);
         shadow

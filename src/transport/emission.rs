@@ -7,27 +7,30 @@ use super::batch::{CameraPaths, Receiver, Segments, Vertices};
 use super::engine::Engine;
 use super::settings::DirectLight;
 use super::surface::SurfaceChunk;
+use super::variant::{Arrival, Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
-use crate::sampling::{SolidAnglePdf, power_heuristic};
+use crate::sampling::{Sampler, SolidAnglePdf, power_heuristic};
 use crate::scene::{Emitter, EmitterId, Side};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
 /// those that met a surface which scatters light, in the order of the segments.
 ///
-/// `camera_rays` says whether the segments come from the camera; `scatters` is false at the last depth, where paths end.
+/// The segments have been scattered `depth` times before; `scatters` is false at the last depth, where paths end.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-pub(super) fn arrive<C: Colour>(
+pub(super) fn arrive<C: Colour, V: Variant>(
     engine: &Engine,
     paths: &mut CameraPaths<C>,
     segments: &Segments<C>,
-    vertices: &mut Vertices<C>,
-    camera_rays: bool,
+    vertices: &mut Vertices<C, V>,
+    sampler: &mut Sampler,
+    depth: u32,
     scatters: bool,
 ) {
+    let camera_rays = depth == 0;
     vertices.restart(segments.len());
     let hidden = camera_rays && engine.settings.hide_emitters;
     let mut surfaces = SurfaceChunk::new();
@@ -74,7 +77,19 @@ pub(super) fn arrive<C: Colour>(
                 continue;
             };
             let material = &engine.scene.materials[shape.material.index()];
-            let Some(bsdf) = material.bsdf::<C>(side, wavelengths) else {
+            let arrival = Arrival::<C> {
+                shape,
+                material,
+                side,
+                point: surfaces.points.get(lane),
+                hit: segments.hit(i),
+                direction: segments.rays.direction(i).into(),
+                wavelengths,
+                is_single: V::DISPERSES && segments.is_single[i],
+                sequence: segments.point[i],
+                depth,
+            };
+            let Some(bsdf) = V::Scattering::at(&arrival, sampler) else {
                 continue;
             };
             scattering.add_if(lane, true);

@@ -7,6 +7,7 @@ use glam::Vec3;
 use super::batch::{CameraPaths, Receiver, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
+use super::variant::Variant;
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::scene::{Emitter, LightSample, Parallelogram};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -89,11 +90,11 @@ impl<C: Colour> LightChunk<C> {
     /// Draws light for the vertices `chunk`, whose positions are `positions`, from three uniform numbers in [0, 1) each:
     /// one chooses the emitter, two a point of it.
     #[inline(always)]
-    pub fn draw(
+    pub fn draw<V: Variant>(
         &mut self,
         engine: &Engine,
         paths: &CameraPaths<C>,
-        vertices: &Vertices<C>,
+        vertices: &Vertices<C, V>,
         chunk: Range<usize>,
         positions: &VectorLanes<CHUNK>,
         numbers: &[[f32; CHUNK]; 3],
@@ -128,10 +129,10 @@ impl<C: Colour> LightChunk<C> {
 
     /// Chooses an emitter for every vertex of `chunk` from a uniform number each.
     #[inline(always)]
-    fn choose(
+    fn choose<V: Variant>(
         &mut self,
         engine: &Engine,
-        vertices: &Vertices<C>,
+        vertices: &Vertices<C, V>,
         chunk: Range<usize>,
         numbers: &[f32; CHUNK],
     ) {

@@ -1,9 +1,6 @@
 //! The rays of a batch, kept as the engine made them: what the intersection layer is measured with.
 
-use super::engine::{Engine, TileJob, TraceBatches, Tracer};
 use crate::embree::Rays;
-use crate::film::FilmTile;
-use crate::spectrum::Colour;
 
 /// The rays of one batch in the order of tracing, before they were traced; in world space.
 #[derive(Clone, Debug, Default)]
@@ -15,15 +12,6 @@ pub struct RecordedRays {
     pub shadows: Vec<Rays>,
 }
 
-impl<C: Colour> Tracer<C> {
-    /// Traces a batch as [`TraceBatches::trace`] does, and returns its rays.
-    pub fn record(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) -> RecordedRays {
-        self.recorded = Some(RecordedRays::default());
-        self.trace(engine, job, tile);
-        self.recorded.take().unwrap_or_default()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::error::Error;
@@ -33,6 +21,7 @@ mod tests {
     use crate::spectrum::Rgb;
     use crate::{LoadOptions, Render, Scene, Settings};
 
+    use super::super::{TileJob, TraceBatches, Tracer};
     use super::*;
 
     #[test]

@@ -5,6 +5,7 @@ use multiversion::multiversion;
 use super::batch::{Segments, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
+use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
 use crate::scene::BsdfSamples;
@@ -17,9 +18,9 @@ use crate::walk::Child;
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-pub(super) fn scatter<C: Colour>(
+pub(super) fn scatter<C: Colour, V: Variant>(
     engine: &Engine,
-    vertices: &Vertices<C>,
+    vertices: &Vertices<C, V>,
     children: &[Child],
     depth: u32,
     sampler: &mut Sampler,
@@ -32,7 +33,7 @@ pub(super) fn scatter<C: Colour>(
     }
     let mut elders = ElderSiblings::default();
     let mut points = [SequencePoint::default(); CHUNK];
-    let mut numbers = [[0.0; CHUNK]; 2];
+    let mut numbers = [[0.0; CHUNK]; 3];
     let mut normals = VectorLanes::default();
     let mut samples = BsdfSamples::new();
     let mut origins = VectorLanes::default();
@@ -42,14 +43,16 @@ pub(super) fn scatter<C: Colour>(
             points[lane] = vertices.point[parent].branch(elders.before(child), depth);
             normals.put(lane, vertices.normal.get(parent));
         }
-        sampler.fill(
-            &points[..children.len()],
-            Use::Direction(depth),
-            numbers.each_mut(),
-        );
+        let drawn = &points[..children.len()];
+        if V::CHOOSES_LOBES {
+            sampler.fill(drawn, Use::Direction(depth), numbers.each_mut());
+        } else {
+            let [u, v, _] = &mut numbers;
+            sampler.fill(drawn, Use::Direction(depth), [u, v]);
+        }
         let parents = children.iter().map(|child| child.parent as usize);
         let bsdfs = parents.clone().map(|parent| &vertices.bsdf[parent]);
-        samples.sample(bsdfs, &normals, &numbers);
+        V::Scattering::sample(bsdfs, &normals, &numbers, &mut samples);
         for (lane, parent) in parents.enumerate() {
             normals.put(lane, vertices.geometric_normal.get(parent));
             origins.put(lane, vertices.position.get(parent));
@@ -83,6 +86,10 @@ pub(super) fn scatter<C: Colour>(
         segments
             .direction_pdf
             .extend(lanes.clone().map(|lane| SolidAnglePdf(samples.pdf[lane])));
+        if V::DISPERSES {
+            let single = lanes.clone().map(|lane| samples.is_single[lane]);
+            segments.is_single.extend(single);
+        }
         if light_is_chosen {
             let receivers = lanes.map(|lane| vertices.receiver(parent(lane)));
             segments.origins.extend(receivers);

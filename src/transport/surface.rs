@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::batch::Segments;
 use super::engine::Engine;
 use crate::lanes::{CHUNK, load};
-use crate::scene::{CornerLanes, Geometry, HitCoordinates, Shape, SurfaceLanes};
+use crate::scene::{CornerLanes, Geometry, Shape, SurfaceLanes};
 use crate::spectrum::Colour;
 
 /// The surface points of a chunk of hits.
@@ -111,13 +111,7 @@ impl<'s> SurfaceChunk<'s> {
                     ..
                 }) => {}
                 Some(shape) => {
-                    let [u, v] = segments.hits.uv(i);
-                    let point = shape.geometry.surface(&HitCoordinates {
-                        primitive: segments.hits.primitive_id(i),
-                        u,
-                        v,
-                        normal: segments.hits.normal(i).into(),
-                    });
+                    let point = shape.geometry.surface(&segments.hit(i));
                     self.points.set(lane, &point);
                 }
             }

@@ -1,6 +1,7 @@
 //! Stage: the strategy decides how many children every vertex gets.
 
 use super::batch::{Particles, Vertices};
+use super::variant::{Scattering, Variant};
 use crate::sampling::{Sampler, SamplerKind};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::{Offspring, Population, Scalar, Scope, Strategy, WalkReport};
@@ -8,9 +9,9 @@ use crate::walk::{Offspring, Population, Scalar, Scope, Strategy, WalkReport};
 /// Shows the vertices to the strategy as a population and lets it fill `offspring`.
 ///
 /// `samples` is the number of camera paths of each pixel, `depth` the number of scattering events before these vertices.
-pub(super) fn decide<C: Colour>(
+pub(super) fn decide<C: Colour, V: Variant>(
     strategy: &dyn Strategy,
-    vertices: &Vertices<C>,
+    vertices: &Vertices<C, V>,
     samples: u32,
     depth: u32,
     particles: &mut Particles,

@@ -30,6 +30,33 @@ pub fn replicates(
     spp: u32,
 ) -> Replicates {
     let what = format!("{} {:?}", scene.name, settings.strategy);
+    let (replicates, believed) = render_all(scene, settings, seeds, spp);
+    if let Some(believed) = believed {
+        check_believed_noise(&what, &replicates, believed);
+    }
+    replicates
+}
+
+/// As [`replicates`], for scenes whose noise is made by samples so rare and bright, such as highlights of a point on polished
+/// surfaces, that a few images do not tell how large it is.
+#[allow(dead_code)]
+pub fn replicates_with_rare_highlights(
+    scene: &Arc<Scene>,
+    settings: Settings,
+    seeds: std::ops::Range<u64>,
+    spp: u32,
+) -> Replicates {
+    render_all(scene, settings, seeds, spp).0
+}
+
+/// The images, and the mean variance of a pixel in three channels that their films believe in.
+fn render_all(
+    scene: &Arc<Scene>,
+    settings: Settings,
+    seeds: std::ops::Range<u64>,
+    spp: u32,
+) -> (Replicates, Option<[f64; 3]>) {
+    let what = format!("{} {:?}", scene.name, settings.strategy);
     let budget = Budget::SamplesPerPixel(NonZeroU32::new(spp).expect("there are samples"));
     let settings = Settings { budget, ..settings };
     let render = Render::new(Arc::clone(scene), settings).expect("the scene can be rendered");
@@ -58,10 +85,7 @@ pub fn replicates(
         }
         replicates.push(outcome.film.image().pixels().to_vec());
     }
-    if let Some(believed) = believed {
-        check_believed_noise(&what, &replicates, believed);
-    }
-    replicates
+    (replicates, believed)
 }
 
 /// Where all samples are the same but for single-precision rounding, their noise is not random: this share of the

@@ -1,9 +1,9 @@
-//! Bsdfs of many vertices at once: a loop over lanes for what has to do with directions, and one over vertices for
-//! spectra, which are lanes themselves.
+//! Bsdfs of many vertices at once. For diffuse surfaces there is a loop over lanes for what has to do with directions, and one over
+//! vertices for spectra, which are lanes themselves.
 //!
 //! Here directions are in world space: the frames of diffuse surfaces need not be stored.
 
-use super::Bsdf;
+use super::Diffuse;
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{Frame, warp};
 use crate::spectrum::SpectrumArithmetic;
@@ -22,8 +22,10 @@ pub(crate) struct BsdfSamples<S> {
     pub direction: VectorLanes<CHUNK>,
     /// Bsdf times cosine over density.
     pub weight: [S; CHUNK],
-    /// The density of the direction over solid angle.
+    /// The density of the direction over solid angle; infinite in a discrete lobe.
     pub pdf: [f32; CHUNK],
+    /// Whether only the path's hero wavelength goes on.
+    pub is_single: [bool; CHUNK],
 }
 
 impl<S: SpectrumArithmetic> BsdfValues<S> {
@@ -35,12 +37,12 @@ impl<S: SpectrumArithmetic> BsdfValues<S> {
         }
     }
 
-    /// Evaluates `bsdfs`, at most [`CHUNK`], each with the unit shading normal of its side and a unit incident direction,
+    /// Evaluates diffuse `bsdfs`, at most [`CHUNK`], each with the unit shading normal of its side and a unit incident direction,
     /// both in world space.
     #[inline(always)]
-    pub fn evaluate(
+    pub fn evaluate_diffuse(
         &mut self,
-        bsdfs: &[Bsdf<S>],
+        bsdfs: &[Diffuse<S>],
         normals: &VectorLanes<CHUNK>,
         directions: &VectorLanes<CHUNK>,
     ) {
@@ -49,9 +51,8 @@ impl<S: SpectrumArithmetic> BsdfValues<S> {
             self.pdf[lane] = warp::cosine_hemisphere_pdf(cosine).0;
         }
         for ((value, bsdf), pdf) in self.value.iter_mut().zip(bsdfs).zip(self.pdf) {
-            let Bsdf::Diffuse(diffuse) = bsdf;
             // The density is the cosine over pi, too.
-            *value = diffuse.albedo() * pdf;
+            *value = bsdf.reflectance * pdf;
         }
     }
 }
@@ -63,27 +64,28 @@ impl<S: SpectrumArithmetic> BsdfSamples<S> {
             direction: VectorLanes::default(),
             weight: [S::ZERO; CHUNK],
             pdf: [0.0; CHUNK],
+            is_single: [false; CHUNK],
         }
     }
 
-    /// Draws an incident direction for each of `bsdfs`, at most [`CHUNK`], with the unit shading normals of their sides in
-    /// world space, from the uniform numbers `u` in [0, 1).
+    /// Draws an incident direction for each of the diffuse `bsdfs`, at most [`CHUNK`], with the unit shading normals of their sides
+    /// in world space, from the uniform numbers `u` and `v` in [0, 1).
     #[inline(always)]
-    pub fn sample<'a>(
+    pub fn sample_diffuse<'a>(
         &mut self,
-        bsdfs: impl Iterator<Item = &'a Bsdf<S>>,
+        bsdfs: impl Iterator<Item = &'a Diffuse<S>>,
         normals: &VectorLanes<CHUNK>,
-        u: &[[f32; CHUNK]; 2],
+        u: &[f32; CHUNK],
+        v: &[f32; CHUNK],
     ) {
-        for (lane, (&u, &v)) in u[0].iter().zip(&u[1]).enumerate() {
+        for (lane, (&u, &v)) in u.iter().zip(v).enumerate() {
             let local = warp::cosine_hemisphere([u, v]);
             let frame = Frame::about(normals.get(lane));
             self.direction.put(lane, frame.to_world(local));
             self.pdf[lane] = warp::cosine_hemisphere_pdf(local.z).0;
         }
         for (weight, bsdf) in self.weight.iter_mut().zip(bsdfs) {
-            let Bsdf::Diffuse(diffuse) = bsdf;
-            *weight = diffuse.albedo();
+            *weight = bsdf.reflectance;
         }
     }
 }

@@ -2,16 +2,17 @@
 //!
 //! | parameter | type | meaning | default |
 //! |---|---|---|---|
-//! | `reflectance` | spectrum | share of the incident light that is reflected, in [0, 1] | 0.5 |
+//! | `reflectance` | spectrum or texture | share of the incident light that is reflected, in [0, 1] | 0.5 |
 
 use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
 use super::{BsdfSample, BsdfValue};
-use crate::sampling::{SolidAnglePdf, warp};
+use crate::sampling::warp;
 use crate::scene::error::SceneError;
-use crate::scene::spectra::{Quantity, spectrum_or};
+use crate::scene::shapes::SurfaceParameters;
+use crate::scene::textures::{SpectrumTexture, TextureLoader};
 use crate::scene::xml::Object;
 use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
 
@@ -21,34 +22,33 @@ const DEFAULT_REFLECTANCE: f32 = 0.5;
 #[derive(Clone, Debug)]
 pub struct DiffuseMaterial {
     /// Share of the incident light that is reflected.
-    pub reflectance: SpectralCurve,
+    pub reflectance: SpectrumTexture,
 }
 
 impl Default for DiffuseMaterial {
     fn default() -> Self {
         let reflectance = SpectralCurve::constant_reflectance(DEFAULT_REFLECTANCE);
         Self {
-            reflectance: reflectance.unwrap_or(SpectralCurve::BLACK),
+            reflectance: SpectrumTexture::Uniform(reflectance.unwrap_or(SpectralCurve::BLACK)),
         }
     }
 }
 
 impl DiffuseMaterial {
-    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
-        let reflectance = spectrum_or(
-            object,
-            "reflectance",
-            Quantity::Reflectance,
-            DEFAULT_REFLECTANCE,
-        )?;
+    pub(super) fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
+        let reflectance = textures.reflectance(object, "reflectance", DEFAULT_REFLECTANCE)?;
         object.finish()?;
         Ok(Self { reflectance })
     }
 
     #[inline]
-    pub(super) fn at<C: Colour>(&self, wavelengths: &C::Wavelengths) -> Diffuse<C::Spectrum> {
+    pub(super) fn at<C: Colour>(
+        &self,
+        point: &SurfaceParameters,
+        wavelengths: &C::Wavelengths,
+    ) -> Diffuse<C::Spectrum> {
         Diffuse {
-            reflectance: C::evaluate(&self.reflectance, wavelengths),
+            reflectance: self.reflectance.spectrum::<C>(point, wavelengths),
         }
     }
 }
@@ -56,42 +56,40 @@ impl DiffuseMaterial {
 /// A diffuse surface at the wavelengths of one path: f = reflectance / pi.
 #[derive(Clone, Copy, Debug)]
 pub struct Diffuse<S> {
-    reflectance: S,
+    /// Share of the incident light that is reflected, in [0, 1].
+    pub reflectance: S,
 }
 
 impl<S: SpectrumArithmetic> Diffuse<S> {
     #[inline]
-    pub(super) fn albedo(&self) -> S {
+    pub(super) fn albedo(&self, _outgoing: Vec3) -> S {
         self.reflectance
     }
 
     #[inline]
-    pub(super) fn shininess(&self) -> f32 {
+    pub(super) fn shininess(&self, _outgoing: Vec3) -> f32 {
         0.0
+    }
+
+    #[inline]
+    pub(super) fn has_smooth_lobe(&self) -> bool {
+        true
     }
 
     #[inline]
     pub(super) fn evaluate(&self, outgoing: Vec3, incident: Vec3) -> BsdfValue<S> {
         if outgoing.z <= 0.0 || incident.z <= 0.0 {
-            return BsdfValue {
-                value: S::ZERO,
-                pdf: SolidAnglePdf(0.0),
-            };
+            return BsdfValue::nothing();
         }
-        BsdfValue {
-            value: self.reflectance * (incident.z * FRAC_1_PI),
-            pdf: warp::cosine_hemisphere_pdf(incident.z),
-        }
+        let value = self.reflectance * (incident.z * FRAC_1_PI);
+        BsdfValue::of(value, warp::cosine_hemisphere_pdf(incident.z).0)
     }
 
     #[inline]
-    pub(super) fn sample(&self, _outgoing: Vec3, u: [f32; 2]) -> BsdfSample<S> {
-        let incident = warp::cosine_hemisphere(u);
-        BsdfSample {
-            incident,
-            // (reflectance / pi) cos / (cos / pi)
-            weight: self.reflectance,
-            pdf: warp::cosine_hemisphere_pdf(incident.z),
-        }
+    pub(super) fn sample(&self, _outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
+        let incident = warp::cosine_hemisphere([u[0], u[1]]);
+        let pdf = warp::cosine_hemisphere_pdf(incident.z).0;
+        // (reflectance / pi) cos / (cos / pi)
+        BsdfSample::smooth(incident, self.reflectance, pdf)
     }
 }

@@ -1,177 +1,285 @@
 //! Bsdfs: how surfaces scatter light.
 //!
-//! A [`Material`] is what the scene states. At a path vertex it becomes a [`Bsdf`]: the scattering function of one
-//! side at the wavelengths of one path, which next-event estimation, the strategy and all children of the vertex share.
+//! A [`Material`] is what the scene states, a tree: `twosided`, `mask`, `blendbsdf`, `bumpmap` and `normalmap` contain
+//! other bsdfs. At a path vertex it becomes a [`Bsdf`]: one scattering model with all of its parameters evaluated at that point
+//! for the wavelengths of one path, which next-event estimation, the strategy and all children of the vertex share.
+//! Where materials are mixed, one of them is drawn there (see [`material`]), so that no `Bsdf` contains another.
 //!
 //! Directions are unit vectors in the local shading frame whose z axis is the normal of the side that was hit; both
-//! point away from the surface. `outgoing` goes to where the path comes from, `incident` to where it goes on.
+//! point away from the surface. `outgoing` goes to where the path comes from and has z > 0, `incident` to where it goes on;
+//! its z is negative behind the surface, in transmission. Values are those of radiance: they include the scaling by the squared
+//! relative index with which radiance is compressed where it is refracted.
 
+mod blend;
+mod bump_map;
 mod chunk;
+mod conductor;
+mod conductor_materials;
+mod dielectric;
 mod diffuse;
+mod fresnel;
+mod index;
+mod mask;
+mod material;
+mod microfacet;
+mod normal_map;
+mod null;
+mod perturbed;
+mod plastic;
+mod principled;
+mod rough_coating;
+mod rough_conductor;
+mod rough_dielectric;
+mod rough_plastic;
+mod roughness;
+mod sellmeier;
+mod side;
+mod thin_dielectric;
 mod twosided;
 
 pub(crate) use chunk::{BsdfSamples, BsdfValues};
+pub use conductor::{Conductor, ConductorMaterial};
+pub use conductor_materials::ConductorIndex;
+pub use dielectric::{Dielectric, DielectricMaterial};
 pub use diffuse::{Diffuse, DiffuseMaterial};
+pub use index::Indices;
+pub(super) use material::load;
+pub use material::{Material, SeenPoint};
+pub use microfacet::Distribution;
+pub use null::Null;
+pub use perturbed::Perturbed;
+pub use plastic::{CoatedBase, Plastic, PlasticMaterial};
+pub use principled::{Principled, PrincipledMaterial, PrincipledThin, PrincipledThinMaterial};
+pub use rough_conductor::{RoughConductor, RoughConductorMaterial};
+pub use rough_dielectric::{RoughDielectric, RoughDielectricMaterial};
+pub use rough_plastic::{RoughPlastic, RoughPlasticMaterial};
+pub use roughness::Roughness;
+pub use side::Side;
+pub use thin_dielectric::ThinDielectric;
 
 use glam::Vec3;
 
-use super::error::SceneError;
-use super::xml::Object;
 use crate::sampling::SolidAnglePdf;
-use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
+use crate::spectrum::SpectrumArithmetic;
 
-/// How the two sides of a surface scatter light.
-///
-/// `twosided` gives both sides a model; every other plugin only the front, and the back of such a surface is black,
-/// as in Mitsuba.
-#[derive(Clone, Debug)]
-pub struct Material {
-    /// The side that the shading normal points to.
-    pub front: Model,
-    /// The other side; black where there is none.
-    pub back: Option<Model>,
-}
-
-impl Default for Material {
-    /// What a shape without a bsdf is made of, unless it emits.
-    fn default() -> Self {
-        Self {
-            front: Model::Diffuse(DiffuseMaterial::default()),
-            back: None,
-        }
-    }
-}
-
-impl Material {
-    /// What a shape that emits and has no bsdf is made of: it reflects nothing.
-    pub fn black() -> Self {
-        Self {
-            front: Model::Diffuse(DiffuseMaterial {
-                reflectance: SpectralCurve::BLACK,
-            }),
-            back: None,
-        }
-    }
-}
-
-/// The bsdf of a scene file.
-pub(super) fn load(object: &Object) -> Result<Material, SceneError> {
-    match object.plugin.as_str() {
-        "twosided" => twosided::load(object),
-        _ => Ok(Material {
-            front: load_model(object)?,
-            back: None,
-        }),
-    }
-}
-
-/// The bsdf of a scene file, for one side.
-fn load_model(object: &Object) -> Result<Model, SceneError> {
-    match object.plugin.as_str() {
-        "diffuse" => DiffuseMaterial::load(object).map(Model::Diffuse),
-        _ => Err(object.unsupported(&["diffuse", "twosided"])),
-    }
-}
-
-/// The scattering model of one side.
-#[derive(Clone, Debug)]
-pub enum Model {
-    /// `diffuse`
-    Diffuse(DiffuseMaterial),
-}
-
-/// The scattering function of one side at the wavelengths of one path.
+/// How one side of a surface scatters light at the wavelengths of one path.
 #[derive(Clone, Copy, Debug)]
 pub enum Bsdf<S> {
-    /// Lambertian reflection.
-    Diffuse(Diffuse<S>),
+    /// By a model in the shading frame.
+    Plain(Model<S>),
+    /// By a model in a frame of its own, that of a bump or a normal map.
+    Perturbed(Perturbed<S>),
 }
 
-/// A bsdf for a pair of directions.
+/// A scattering model with its parameters.
+#[derive(Clone, Copy, Debug)]
+pub enum Model<S> {
+    /// Lambertian reflection.
+    Diffuse(Diffuse<S>),
+    /// A smooth metal.
+    Conductor(Conductor<S>),
+    /// A rough metal.
+    RoughConductor(RoughConductor<S>),
+    /// A smooth interface.
+    Dielectric(Dielectric<S>),
+    /// A rough interface.
+    RoughDielectric(RoughDielectric<S>),
+    /// A thin pane.
+    ThinDielectric(ThinDielectric<S>),
+    /// A diffuse base under a smooth coating.
+    Plastic(Plastic<S>),
+    /// A diffuse base under a rough coating.
+    RoughPlastic(RoughPlastic<S>),
+    /// The surface of a solid, a mixture of many lobes.
+    Principled(Principled<S>),
+    /// A sheet, a mixture of many lobes.
+    PrincipledThin(PrincipledThin<S>),
+    /// Nothing: light passes.
+    Null(Null),
+}
+
+/// What the smooth lobes of a bsdf say of a pair of directions; discrete lobes have no values.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfValue<S> {
-    /// The bsdf times the cosine of the incident direction, in 1/sr.
+    /// The bsdf times the absolute cosine of the incident direction, in 1/sr.
     pub value: S,
     /// The density with which [`Bsdf::sample`] draws the incident direction.
     pub pdf: SolidAnglePdf,
+    /// Whether the value is that of the hero wavelength alone: see [`BsdfSample::is_dispersive`].
+    pub is_dispersive: bool,
+}
+
+impl<S: SpectrumArithmetic> BsdfValue<S> {
+    /// Directions between which nothing is scattered.
+    #[inline]
+    pub(super) fn nothing() -> Self {
+        Self::of(S::ZERO, 0.0)
+    }
+
+    /// A value for all wavelengths and the density `pdf` in 1/sr.
+    #[inline]
+    pub(super) fn of(value: S, pdf: f32) -> Self {
+        Self {
+            value,
+            pdf: SolidAnglePdf(pdf),
+            is_dispersive: false,
+        }
+    }
 }
 
 /// An incident direction drawn from a bsdf.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample<S> {
-    /// The direction, local.
+    /// The direction, local. It means nothing where `weight` is black.
     pub incident: Vec3,
-    /// bsdf times cosine over density.
+    /// bsdf times absolute cosine over density, or over probability in a discrete lobe; black where no direction was found.
     pub weight: S,
-    /// The density of `incident`.
+    /// The density of `incident`; infinite in a discrete lobe, which only sampling can find.
     pub pdf: SolidAnglePdf,
+    /// Index of refraction behind the surface over the one before it where the direction was refracted, otherwise 1.
+    pub eta: f32,
+    /// Whether only the hero wavelength goes in this direction: a path that follows it goes on with
+    /// [`SpectrumArithmetic::only_hero`] of its throughput, unless it carries a single wavelength already.
+    pub is_dispersive: bool,
 }
 
-/// A side of a surface, as seen from where a path comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// The side that the shading normal points to.
-    Front,
-    /// The other side.
-    Back,
-}
-
-impl Side {
-    /// The side that a direction with cosine `cosine` against the shading normal sees; none edge-on.
+impl<S: SpectrumArithmetic> BsdfSample<S> {
+    /// No direction was found.
     #[inline]
-    pub fn seen_with(cosine: f32) -> Option<Self> {
-        if cosine > 0.0 {
-            Some(Self::Front)
-        } else if cosine < 0.0 {
-            Some(Self::Back)
-        } else {
-            None
+    pub(super) fn failed() -> Self {
+        Self::smooth(Vec3::Z, S::ZERO, 0.0)
+    }
+
+    /// A direction of a smooth lobe, not refracted, with the density `pdf` in 1/sr.
+    #[inline]
+    pub(super) fn smooth(incident: Vec3, weight: S, pdf: f32) -> Self {
+        Self {
+            incident,
+            weight,
+            pdf: SolidAnglePdf(pdf),
+            eta: 1.0,
+            is_dispersive: false,
         }
     }
+
+    /// A direction drawn with the density that `value` states.
+    #[inline]
+    pub(super) fn of_value(incident: Vec3, value: BsdfValue<S>) -> Self {
+        if !(value.pdf.0 > 0.0 && value.pdf.0.is_finite()) {
+            return Self::failed();
+        }
+        Self {
+            is_dispersive: value.is_dispersive,
+            ..Self::smooth(incident, value.value / value.pdf.0, value.pdf.0)
+        }
+    }
+
+    /// The direction of a discrete lobe, not refracted.
+    #[inline]
+    pub(super) fn discrete(incident: Vec3, weight: S) -> Self {
+        Self::smooth(incident, weight, f32::INFINITY)
+    }
 }
 
-impl Material {
-    /// The bsdf of a side at the given wavelengths, or `None` where that side is black.
-    #[inline]
-    pub fn bsdf<C: Colour>(
-        &self,
-        side: Side,
-        wavelengths: &C::Wavelengths,
-    ) -> Option<Bsdf<C::Spectrum>> {
-        let model = match side {
-            Side::Front => Some(&self.front),
-            Side::Back => self.back.as_ref(),
-        };
-        model.map(|Model::Diffuse(diffuse)| Bsdf::Diffuse(diffuse.at::<C>(wavelengths)))
-    }
+/// The shininess of lobes that scatter the given shares of the light: the one whose 1 / (s + 1), the spread that
+/// go-with-the-winners asks for, is the mean of theirs.
+pub(super) fn mixed_shininess<const N: usize>(shares: [f32; N], shininess: [f32; N]) -> f32 {
+    let spread = |i: usize| shares[i] / (shininess[i] + 1.0);
+    let mean = (0..N).map(spread).sum::<f32>() / shares.iter().sum::<f32>();
+    // Not-a-number, where nothing is scattered, is not below 1.
+    if mean < 1.0 { 1.0 / mean - 1.0 } else { 0.0 }
+}
+
+/// Calls a method of the model that a bsdf has, in whichever frame.
+macro_rules! dispatch_frame {
+    ($bsdf:expr, $model:ident => $call:expr) => {
+        match $bsdf {
+            Bsdf::Plain($model) => $call,
+            Bsdf::Perturbed($model) => $call,
+        }
+    };
+}
+
+/// Calls a method of a model.
+macro_rules! dispatch {
+    ($bsdf:expr, $model:ident => $call:expr) => {
+        match $bsdf {
+            Model::Diffuse($model) => $call,
+            Model::Conductor($model) => $call,
+            Model::RoughConductor($model) => $call,
+            Model::Dielectric($model) => $call,
+            Model::RoughDielectric($model) => $call,
+            Model::ThinDielectric($model) => $call,
+            Model::Plastic($model) => $call,
+            Model::RoughPlastic($model) => $call,
+            Model::Principled($model) => $call,
+            Model::PrincipledThin($model) => $call,
+            Model::Null($model) => $call,
+        }
+    };
 }
 
 impl<S: SpectrumArithmetic> Bsdf<S> {
-    /// The directional-hemispherical reflectance for `outgoing`, in [0, 1].
+    /// The share of the light from `outgoing` that is scattered into any direction, in [0, 1]: the directional-hemispherical
+    /// reflectance and transmittance. It leaves out the scaling of refracted radiance, and where a model has no closed form it is
+    /// an approximation that is positive wherever the model scatters; strategies use it to distribute their particles.
     #[inline]
-    pub fn albedo(&self) -> S {
-        let Self::Diffuse(diffuse) = self;
-        diffuse.albedo()
+    pub fn albedo(&self, outgoing: Vec3) -> S {
+        dispatch_frame!(self, model => model.albedo(outgoing))
     }
 
-    /// The shininess that go-with-the-winners asks for: 0 for a perfectly diffuse surface, infinite for a mirror.
+    /// The shininess that go-with-the-winners asks for: 0 for a perfectly diffuse surface, infinite for a mirror. For rough
+    /// surfaces it is the exponent of the Phong lobe that is as wide (Walter et al. 2007, section 5.2: 2/alpha^2 - 2).
     #[inline]
-    pub fn shininess(&self) -> f32 {
-        let Self::Diffuse(diffuse) = self;
-        diffuse.shininess()
+    pub fn shininess(&self, outgoing: Vec3) -> f32 {
+        dispatch_frame!(self, model => model.shininess(outgoing))
     }
 
-    /// The bsdf and its sampling density for a pair of directions.
+    /// Whether light from directions other than a few discrete ones is scattered: only then next-event estimation can find any.
+    #[inline]
+    pub fn has_smooth_lobe(&self) -> bool {
+        dispatch_frame!(self, model => model.has_smooth_lobe())
+    }
+
+    /// The smooth lobes and their sampling density for a pair of directions.
     #[inline]
     pub fn evaluate(&self, outgoing: Vec3, incident: Vec3) -> BsdfValue<S> {
-        let Self::Diffuse(diffuse) = self;
-        diffuse.evaluate(outgoing, incident)
+        dispatch_frame!(self, model => model.evaluate(outgoing, incident))
     }
 
-    /// Draws an incident direction from the uniform numbers `u` in [0, 1).
+    /// Draws an incident direction from the uniform numbers `u` in [0, 1); the third chooses among lobes.
     #[inline]
-    pub fn sample(&self, outgoing: Vec3, u: [f32; 2]) -> BsdfSample<S> {
-        let Self::Diffuse(diffuse) = self;
-        diffuse.sample(outgoing, u)
+    pub fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
+        dispatch_frame!(self, model => model.sample(outgoing, u))
     }
 }
+
+impl<S: SpectrumArithmetic> Model<S> {
+    #[inline]
+    fn albedo(&self, outgoing: Vec3) -> S {
+        dispatch!(self, model => model.albedo(outgoing))
+    }
+
+    #[inline]
+    fn shininess(&self, outgoing: Vec3) -> f32 {
+        dispatch!(self, model => model.shininess(outgoing))
+    }
+
+    #[inline]
+    fn has_smooth_lobe(&self) -> bool {
+        dispatch!(self, model => model.has_smooth_lobe())
+    }
+
+    #[inline]
+    fn evaluate(&self, outgoing: Vec3, incident: Vec3) -> BsdfValue<S> {
+        dispatch!(self, model => model.evaluate(outgoing, incident))
+    }
+
+    #[inline]
+    fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
+        dispatch!(self, model => model.sample(outgoing, u))
+    }
+}
+
+#[cfg(test)]
+mod tests;

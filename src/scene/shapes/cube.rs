@@ -9,26 +9,55 @@ use crate::scene::mesh::MeshData;
 
 /// The cube in its own space, with four vertices of its own for each side so that every side has its own coordinates.
 pub(crate) fn cube() -> MeshData {
-    let mut mesh = MeshData::default();
-    let mut uvs = Vec::new();
-    for axis in 0..3 {
-        for side in [-1.0_f32, 1.0] {
-            let first = mesh.positions.len() as u32;
-            for [a, b] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
-                // Mirroring the first coordinate on the negative sides keeps every side counter-clockwise from outside.
-                let mut position = [0.0; 3];
-                position[axis] = side;
-                position[(axis + 1) % 3] = a * side;
-                position[(axis + 2) % 3] = b;
-                mesh.positions.push(position);
-                uvs.push([0.5 * (a + 1.0), 0.5 * (b + 1.0)]);
-            }
-            mesh.triangles.push([first, first + 1, first + 2]);
-            mesh.triangles.push([first + 2, first + 3, first]);
-        }
+    // Four corners of every side, counter-clockwise from outside: Mitsuba's order, which texture coordinates follow.
+    const SIDES: [[[f32; 3]; 4]; 6] = [
+        [
+            [1.0, -1.0, -1.0],
+            [1.0, -1.0, 1.0],
+            [-1.0, -1.0, 1.0],
+            [-1.0, -1.0, -1.0],
+        ],
+        [
+            [1.0, 1.0, -1.0],
+            [-1.0, 1.0, -1.0],
+            [-1.0, 1.0, 1.0],
+            [1.0, 1.0, 1.0],
+        ],
+        [
+            [1.0, -1.0, -1.0],
+            [1.0, 1.0, -1.0],
+            [1.0, 1.0, 1.0],
+            [1.0, -1.0, 1.0],
+        ],
+        [
+            [1.0, -1.0, 1.0],
+            [1.0, 1.0, 1.0],
+            [-1.0, 1.0, 1.0],
+            [-1.0, -1.0, 1.0],
+        ],
+        [
+            [-1.0, -1.0, 1.0],
+            [-1.0, 1.0, 1.0],
+            [-1.0, 1.0, -1.0],
+            [-1.0, -1.0, -1.0],
+        ],
+        [
+            [1.0, 1.0, -1.0],
+            [1.0, -1.0, -1.0],
+            [-1.0, -1.0, -1.0],
+            [-1.0, 1.0, -1.0],
+        ],
+    ];
+    const UVS: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+    let firsts = (0..24).step_by(4);
+    MeshData {
+        positions: SIDES.concat(),
+        normals: None,
+        uvs: Some(UVS.repeat(SIDES.len())),
+        triangles: firsts
+            .flat_map(|i| [[i, i + 1, i + 2], [i + 3, i, i + 2]])
+            .collect(),
     }
-    mesh.uvs = Some(uvs);
-    mesh
 }
 
 #[cfg(test)]

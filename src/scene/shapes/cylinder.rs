@@ -10,11 +10,11 @@
 
 use std::f32::consts::PI;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::Placement;
 use super::sphere::load_radius;
-use super::{HitCoordinates, ShapeSample, SurfacePoint};
+use super::{HitCoordinates, ShapeSample, SurfaceParameters, SurfacePoint};
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;
 use crate::scene::xml::Object;
@@ -30,6 +30,8 @@ pub struct Cylinder {
     pub radius: f32,
     /// Whether the inner side is the outer one.
     pub flip_normals: bool,
+    /// Unit vectors across the axis, in world space: texture coordinates turn from the first to the second.
+    pub across: [Vec3; 2],
 }
 
 /// Where a ray meets a cylinder.
@@ -48,15 +50,20 @@ impl Cylinder {
         let start = object.vector("p0")?.unwrap_or(DVec3::ZERO);
         let end = object.vector("p1")?.unwrap_or(DVec3::Z);
         let radius = load_radius(object)? * placement.uniform_scale(object)?;
+        let Some(along) = (end - start).try_normalize() else {
+            return Err(object.error("the ends `p0` and `p1` of the cylinder coincide"));
+        };
+        let own = Frame::about(along.as_vec3());
         let cylinder = Self {
             start: placement.to_world.transform_point3(start).as_vec3(),
             axis: placement.to_world.transform_vector3(end - start).as_vec3(),
             radius: radius as f32,
             flip_normals: placement.flip_normals,
+            across: [own.tangent, own.bitangent].map(|local| {
+                let world = placement.to_world.transform_vector3(local.as_dvec3());
+                world.as_vec3().normalize_or_zero()
+            }),
         };
-        if start == end {
-            return Err(object.error("the ends `p0` and `p1` of the cylinder coincide"));
-        }
         Ok(cylinder)
     }
 
@@ -107,6 +114,24 @@ impl Cylinder {
     fn point(&self, along: f32, radial: Vec3) -> SurfacePoint {
         let position = self.start + self.axis * along + radial * self.radius;
         SurfacePoint::flat(position, radial).flipped_if(self.flip_normals)
+    }
+
+    /// u is the angle in units of the whole circle, v the position along the axis.
+    pub(super) fn parameters(
+        &self,
+        hit: &HitCoordinates,
+        point: &SurfacePoint,
+    ) -> SurfaceParameters {
+        let radial = hit.normal.normalize_or_zero();
+        let [x, y] = self.across.map(|axis| axis.dot(radial));
+        let angle = y.atan2(x).rem_euclid(2.0 * PI);
+        let around = self.across[1] * x - self.across[0] * y;
+        SurfaceParameters {
+            uv: Vec2::new(angle / (2.0 * PI), hit.u),
+            dp_du: around * (2.0 * PI * self.radius),
+            dp_dv: self.axis,
+            geometric_normal: point.geometric_normal,
+        }
     }
 
     pub(super) fn area(&self) -> f32 {

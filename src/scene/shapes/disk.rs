@@ -5,10 +5,12 @@
 //! | `flip_normals` | boolean | let it face the other way | false |
 //! | `to_world` | transform | any affine transform | identity |
 
-use glam::{DVec3, Vec3};
+use std::f32::consts::PI;
+
+use glam::{DVec3, Vec2, Vec3};
 
 use super::Placement;
-use super::{HitCoordinates, ShapeSample, SurfacePoint};
+use super::{HitCoordinates, ShapeSample, SurfaceParameters, SurfacePoint};
 use crate::sampling::warp;
 
 /// An ellipse in world space.
@@ -84,8 +86,26 @@ impl Disk {
         SurfacePoint::flat(position, self.normal()).flipped_if(self.flip_normals)
     }
 
+    /// u is the distance from the centre in units of the radius, v the angle in units of the whole circle.
+    pub(super) fn parameters(
+        &self,
+        hit: &HitCoordinates,
+        point: &SurfacePoint,
+    ) -> SurfaceParameters {
+        let place = Vec2::new(hit.u, hit.v);
+        let (distance, azimuth) = (place.length(), place.try_normalize().unwrap_or(Vec2::X));
+        let angle = azimuth.y.atan2(azimuth.x).rem_euclid(2.0 * PI);
+        let around = self.axis_v * azimuth.x - self.axis_u * azimuth.y;
+        SurfaceParameters {
+            uv: Vec2::new(distance, angle / (2.0 * PI)),
+            dp_du: self.axis_u * azimuth.x + self.axis_v * azimuth.y,
+            dp_dv: around * (2.0 * PI * distance),
+            geometric_normal: point.geometric_normal,
+        }
+    }
+
     pub(super) fn area(&self) -> f32 {
-        std::f32::consts::PI * self.axis_u.cross(self.axis_v).length()
+        PI * self.axis_u.cross(self.axis_v).length()
     }
 
     pub(super) fn sample(&self, reference: Vec3, u: [f32; 2]) -> ShapeSample {

@@ -9,6 +9,7 @@ mod disk;
 mod lanes;
 mod mesh_file;
 mod mesh_sampling;
+mod parameters;
 mod rectangle;
 mod sphere;
 mod triangles;
@@ -17,6 +18,7 @@ pub use cylinder::{Cylinder, CylinderHit};
 pub use disk::{Disk, DiskHit};
 pub(crate) use lanes::{CornerLanes, SurfaceLanes};
 pub(crate) use mesh_sampling::Parallelogram;
+pub use parameters::SurfaceParameters;
 pub use sphere::Sphere;
 pub use triangles::{TriangleAttributes, Triangles};
 
@@ -217,6 +219,16 @@ impl Geometry {
             Self::Sphere(shape) => shape.surface(hit),
             Self::Disk(shape) => shape.surface(hit),
             Self::Cylinder(shape) => shape.surface(hit),
+        }
+    }
+
+    /// Where the point `point` of a hit lies on the shape.
+    pub fn parameters(&self, hit: &HitCoordinates, point: &SurfacePoint) -> SurfaceParameters {
+        match self {
+            Self::Triangles(shape) => shape.parameters(hit, point),
+            Self::Sphere(shape) => shape.parameters(point),
+            Self::Disk(shape) => shape.parameters(hit, point),
+            Self::Cylinder(shape) => shape.parameters(hit, point),
         }
     }
 

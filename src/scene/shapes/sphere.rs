@@ -9,10 +9,12 @@
 //!
 //! As a light it is sampled by the cone of directions under which it is seen from outside, and by area from inside.
 
-use glam::{DVec3, Vec3};
+use std::f32::consts::PI;
+
+use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
 
 use super::Placement;
-use super::{HitCoordinates, ShapeSample, SurfacePoint};
+use super::{HitCoordinates, ShapeSample, SurfaceParameters, SurfacePoint};
 use crate::sampling::{Frame, SolidAnglePdf, warp};
 use crate::scene::error::SceneError;
 use crate::scene::xml::Object;
@@ -26,6 +28,8 @@ pub struct Sphere {
     pub radius: f32,
     /// Whether the inner side is the outer one.
     pub flip_normals: bool,
+    /// The sphere's own axes in world space, orthonormal: its texture coordinates turn about the third.
+    pub axes: Mat3,
 }
 
 /// A radius in a scene file: positive.
@@ -48,6 +52,9 @@ impl Sphere {
             center: placement.to_world.transform_point3(center).as_vec3(),
             radius: radius as f32,
             flip_normals: placement.flip_normals != (placement.to_world.determinant() < 0.0),
+            axes: (DMat3::from_mat4(placement.to_world)
+                * (1.0 / placement.uniform_scale(object)?))
+            .as_mat3(),
         })
     }
 
@@ -78,6 +85,24 @@ impl Sphere {
     pub(super) fn surface(&self, hit: &HitCoordinates) -> SurfacePoint {
         let normal = hit.normal.normalize();
         SurfacePoint::flat(self.center + normal * self.radius, normal).flipped_if(self.flip_normals)
+    }
+
+    /// u is the longitude and v the angle from the pole, in units of the whole circle and of the half.
+    pub(super) fn parameters(&self, point: &SurfacePoint) -> SurfaceParameters {
+        let local = self.axes.transpose() * ((point.position - self.center) / self.radius);
+        let across = Vec2::new(local.x, local.y).length();
+        let azimuth = Vec2::new(local.x, local.y)
+            .try_normalize()
+            .unwrap_or(Vec2::X);
+        let longitude = azimuth.y.atan2(azimuth.x).rem_euclid(2.0 * PI);
+        let along_u = Vec3::new(-local.y, local.x, 0.0) * (2.0 * PI);
+        let along_v = Vec3::new(local.z * azimuth.x, local.z * azimuth.y, -across) * PI;
+        SurfaceParameters {
+            uv: Vec2::new(longitude / (2.0 * PI), local.z.clamp(-1.0, 1.0).acos() / PI),
+            dp_du: self.axes * along_u * self.radius,
+            dp_dv: self.axes * along_v * self.radius,
+            geometric_normal: point.geometric_normal,
+        }
     }
 
     pub(super) fn area(&self) -> f32 {

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::lanes::{CornerLanes, SurfaceLanes};
 use super::mesh_sampling::{MeshSampling, Parallelogram};
-use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfacePoint};
+use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfaceParameters, SurfacePoint};
 use crate::embree::{IndexBuffer, Vertex, VertexBuffer};
+use crate::sampling::Frame;
 use crate::scene::error::SceneError;
 use crate::scene::mesh::{self, MeshData};
 use crate::scene::xml::Object;
@@ -24,10 +25,12 @@ pub struct Triangles {
 }
 
 /// What a mesh is beside vertices and indices.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct TriangleAttributes {
     /// Whether the vertices have normals; without them the mesh is shaded flat.
     pub is_smooth: bool,
+    /// Texture coordinates of the vertices.
+    pub uvs: Option<Vec<[f32; 2]>>,
     /// Whether the clockwise side of the triangles is the outer one.
     pub flip_normals: bool,
 }
@@ -91,6 +94,7 @@ impl Triangles {
         let normals = normals.filter(|normals| !are_flat(&mesh, normals));
         let attributes = TriangleAttributes {
             is_smooth: normals.is_some(),
+            uvs: mesh.uvs.take(),
             flip_normals: placement.flip_normals,
         };
         let vertices = Arc::new(match normals {
@@ -166,6 +170,46 @@ impl Triangles {
         self.fetch(self.corners(triangle), &mut corners, 0);
         corners.interpolate(&[u], &[v], &mut points);
         points.get(0)
+    }
+
+    /// Where a hit lies in the texture coordinates of the vertices; without them, its barycentric coordinates.
+    pub(super) fn parameters(
+        &self,
+        hit: &HitCoordinates,
+        point: &SurfacePoint,
+    ) -> SurfaceParameters {
+        let corners = self.corners(hit.primitive).map(|i| i as usize);
+        let [a, b, c] = corners.map(|i| Vec3::from(self.vertices[i].position));
+        let (ab, ac) = (b - a, c - a);
+        let geometric_normal = point.geometric_normal;
+        let Some(uvs) = &self.attributes.uvs else {
+            return SurfaceParameters {
+                uv: Vec2::new(hit.u, hit.v),
+                dp_du: ab,
+                dp_dv: ac,
+                geometric_normal,
+            };
+        };
+        let [uv_a, uv_b, uv_c] = corners.map(|i| Vec2::from(uvs[i]));
+        let (uv_ab, uv_ac) = (uv_b - uv_a, uv_c - uv_a);
+        let uv = uv_a + uv_ab * hit.u + uv_ac * hit.v;
+        let determinant = uv_ab.perp_dot(uv_ac);
+        let (dp_du, dp_dv) = if determinant == 0.0 {
+            // The coordinates say nothing of directions.
+            let frame = Frame::about(geometric_normal);
+            (frame.tangent, frame.bitangent)
+        } else {
+            (
+                (ab * uv_ac.y - ac * uv_ab.y) / determinant,
+                (ac * uv_ab.x - ab * uv_ac.x) / determinant,
+            )
+        };
+        SurfaceParameters {
+            uv,
+            dp_du,
+            dp_dv,
+            geometric_normal,
+        }
     }
 
     /// The vertices of a triangle. Together with [`Self::fetch`] and [`CornerLanes::interpolate`] this is [`Self::point`]

@@ -20,7 +20,7 @@ mod transform;
 mod value;
 
 pub use document::{Document, SceneSource, parse};
-pub use object::{Child, Class, Object, SpectrumProperty};
+pub use object::{Child, Class, NamedSpectrum, Object, SpectrumProperty};
 pub use value::{SpectrumValue, Value};
 
 #[cfg(test)]

@@ -120,6 +120,15 @@ pub enum SpectrumProperty {
     Texture(Arc<Object>),
 }
 
+/// A spectrum, or the name of one.
+#[derive(Clone, Debug)]
+pub enum NamedSpectrum<'o> {
+    /// `<string>`: a name.
+    Name(&'o str),
+    /// The spectrum itself.
+    Spectrum(SpectrumProperty),
+}
+
 /// An object of the scene file: a plugin, its parameters and nested objects.
 ///
 /// The getters remember what they were asked for. When a plugin has asked for everything it knows,
@@ -241,6 +250,25 @@ impl Object {
             }
             _ => None,
         })
+    }
+
+    /// Whether there is a parameter or a nested object called `name`; asking does not make it a known one.
+    pub fn has(&self, name: &str) -> bool {
+        self.parameters.iter().any(|found| found.name == name)
+            || self.children.iter().any(|child| child.name == name)
+    }
+
+    /// A spectrum in any of its forms, or the name of one that is known.
+    pub fn named_spectrum(
+        &self,
+        name: &'static str,
+    ) -> Result<Option<NamedSpectrum<'_>>, SceneError> {
+        let parameter = self.parameters.iter().find(|found| found.name == name);
+        if let Some(Value::String(known)) = parameter.map(|found| &found.value) {
+            self.ask_parameter(name);
+            return Ok(Some(NamedSpectrum::Name(known)));
+        }
+        Ok(self.spectrum(name)?.map(NamedSpectrum::Spectrum))
     }
 
     /// The nested object of `class`; more than one is an error.

@@ -1,0 +1,153 @@
+//! Parameters of scene files that may be textures.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::{Affine2, DMat4, Mat2, Vec2};
+
+use super::bitmap::Texels;
+use super::{Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture, image_file, luminance};
+use crate::scene::error::SceneError;
+use crate::scene::spectra::{Quantity, Stated, number, stated};
+use crate::scene::xml::{Document, Object, SpectrumProperty};
+use crate::spectrum::SpectralCurve;
+
+/// Loads textures, each file once.
+pub(in crate::scene) struct TextureLoader<'d> {
+    document: &'d Document,
+    /// Images by file and by whether they are raw.
+    images: HashMap<(PathBuf, bool), Arc<Texels>>,
+}
+
+/// What a texture turned out to be.
+enum Loaded {
+    Pattern(Pattern),
+    /// An image of one colour, linear sRGB.
+    Uniform([f32; 3]),
+}
+
+impl<'d> TextureLoader<'d> {
+    pub fn new(document: &'d Document) -> Self {
+        Self {
+            document,
+            images: HashMap::new(),
+        }
+    }
+
+    /// The reflectance or transmittance that `object` has under `name`, or the grey `default`.
+    pub fn reflectance(
+        &mut self,
+        object: &Object,
+        name: &'static str,
+        default: f32,
+    ) -> Result<SpectrumTexture, SceneError> {
+        let curve = match object.spectrum(name)? {
+            Some(property) => match stated(property, Quantity::Reflectance) {
+                Stated::Texture(texture) => match self.texture(&texture)? {
+                    Loaded::Pattern(pattern) => return Ok(SpectrumTexture::Varying(pattern)),
+                    Loaded::Uniform(rgb) => SpectralCurve::rgb_reflectance(rgb),
+                },
+                Stated::Curve(curve) => curve,
+            },
+            None => number(default, Quantity::Reflectance),
+        };
+        curve
+            .map(SpectrumTexture::Uniform)
+            .map_err(|error| object.parameter_error(name, format!("`{name}`: {error}")))
+    }
+
+    /// The number that `object` has under `name`, or `default`. A colour stands for its luminance.
+    pub fn number(
+        &mut self,
+        object: &Object,
+        name: &'static str,
+        default: f32,
+    ) -> Result<FloatTexture, SceneError> {
+        let value = match object.spectrum(name)? {
+            None => default,
+            Some(SpectrumProperty::Number(value) | SpectrumProperty::Constant(value)) => {
+                value as f32
+            }
+            Some(SpectrumProperty::Rgb(rgb)) => luminance(rgb.map(|channel| channel as f32)),
+            Some(SpectrumProperty::List(_)) => {
+                let message = format!("`{name}` has to be a number or a texture, not a spectrum");
+                return Err(object.parameter_error(name, message));
+            }
+            Some(SpectrumProperty::Texture(texture)) => match self.texture(&texture)? {
+                Loaded::Pattern(pattern) => return Ok(FloatTexture::Varying(pattern)),
+                Loaded::Uniform(rgb) => luminance(rgb),
+            },
+        };
+        Ok(FloatTexture::Uniform(value))
+    }
+
+    /// The image that `object` is.
+    pub fn bitmap(&mut self, object: &Object) -> Result<Bitmap, SceneError> {
+        if object.plugin != "bitmap" {
+            return Err(object.unsupported(&["bitmap"]));
+        }
+        let texels = self.texels(object)?;
+        Bitmap::load(object, texels)
+    }
+
+    fn texture(&mut self, object: &Object) -> Result<Loaded, SceneError> {
+        match object.plugin.as_str() {
+            "bitmap" => {
+                let texels = self.texels(object)?;
+                let bitmap = Bitmap::load(object, texels.clone())?;
+                Ok(match texels.uniform() {
+                    Some(rgb) => Loaded::Uniform(rgb),
+                    None => Loaded::Pattern(Pattern::Bitmap(bitmap)),
+                })
+            }
+            "checkerboard" => {
+                let board = Checkerboard::load(object, self)?;
+                Ok(Loaded::Pattern(Pattern::Checkerboard(Box::new(board))))
+            }
+            _ => Err(object.unsupported(&["bitmap", "checkerboard"])),
+        }
+    }
+
+    /// The image file that `object` names, whose numbers must all be in [0, 1].
+    fn texels(&mut self, object: &Object) -> Result<Arc<Texels>, SceneError> {
+        let filename = object
+            .string("filename")?
+            .ok_or_else(|| object.missing("filename"))?;
+        let raw = object.boolean_or("raw", false)?;
+        let path = self.document.resolve(object, "filename", filename)?;
+        let key = (path, raw);
+        if let Some(known) = self.images.get(&key) {
+            return Ok(known.clone());
+        }
+        let path = &key.0;
+        let located = |problem: String| {
+            let message = format!("cannot read the image {}: {problem}", path.display());
+            object.parameter_error("filename", message)
+        };
+        let image = image_file::read(path)
+            .and_then(|image| image.decoded(raw))
+            .map_err(located)?;
+        if let Some((x, y, number)) = image.first_outside_unit() {
+            return Err(located(format!(
+                "the pixel ({x}, {y}) has {number}; a texture has numbers from 0 to 1"
+            )));
+        }
+        let texels = Arc::new(Texels::new(image));
+        self.images.insert(key, texels.clone());
+        Ok(texels)
+    }
+}
+
+/// The transform of texture coordinates `to_uv`: of the 4 x 4 matrix, what it does in the plane.
+pub(super) fn to_uv(object: &Object) -> Result<Affine2, SceneError> {
+    let matrix = object.transform("to_uv")?.unwrap_or(DMat4::IDENTITY);
+    let column = |axis: usize| {
+        let column = matrix.col(axis);
+        Vec2::new(column.x as f32, column.y as f32)
+    };
+    Ok(Affine2::from_mat2_translation(
+        Mat2::from_cols(column(0), column(1)),
+        column(3),
+    ))
+}

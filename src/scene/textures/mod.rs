@@ -1,0 +1,145 @@
+//! Textures: parameters of materials that vary over a surface.
+//!
+//! A parameter is a [`SpectrumTexture`] where it is a colour and a [`FloatTexture`] where it is a number; both are uniform
+//! or show a [`Pattern`].
+
+mod bitmap;
+mod checkerboard;
+mod image_file;
+mod loader;
+
+pub use bitmap::Bitmap;
+pub use checkerboard::Checkerboard;
+pub(super) use loader::TextureLoader;
+
+use super::shapes::SurfaceParameters;
+use crate::spectrum::{Colour, SpectralCurve};
+
+/// A colour for every point of a surface.
+#[derive(Clone, Debug)]
+pub enum SpectrumTexture {
+    /// The same everywhere.
+    Uniform(SpectralCurve),
+    /// One that varies.
+    Varying(Pattern),
+}
+
+/// A number for every point of a surface.
+#[derive(Clone, Debug)]
+pub enum FloatTexture {
+    /// The same everywhere.
+    Uniform(f32),
+    /// One that varies.
+    Varying(Pattern),
+}
+
+/// What varies over a surface.
+#[derive(Clone, Debug)]
+pub enum Pattern {
+    /// `bitmap`
+    Bitmap(Bitmap),
+    /// `checkerboard`
+    Checkerboard(Box<Checkerboard>),
+}
+
+impl SpectrumTexture {
+    /// The colour at `point` at a path's wavelengths.
+    #[inline]
+    pub fn spectrum<C: Colour>(
+        &self,
+        point: &SurfaceParameters,
+        wavelengths: &C::Wavelengths,
+    ) -> C::Spectrum {
+        match self {
+            Self::Uniform(curve) => C::evaluate(curve, wavelengths),
+            Self::Varying(pattern) => pattern.spectrum::<C>(point, wavelengths),
+        }
+    }
+
+    /// The colour at `point` as one number: its luminance.
+    pub fn number(&self, point: &SurfaceParameters) -> f32 {
+        match self {
+            Self::Uniform(curve) => luminance(curve.rgb()),
+            Self::Varying(pattern) => pattern.number(point),
+        }
+    }
+
+    /// The colour at `point` as linear sRGB.
+    pub fn rgb(&self, point: &SurfaceParameters) -> [f32; 3] {
+        match self {
+            Self::Uniform(curve) => curve.rgb(),
+            Self::Varying(pattern) => pattern.rgb(point),
+        }
+    }
+
+    /// The mean over points and channels, about.
+    pub fn mean(&self) -> f32 {
+        match self {
+            Self::Uniform(curve) => curve.rgb().iter().sum::<f32>() / 3.0,
+            Self::Varying(pattern) => pattern.mean(),
+        }
+    }
+
+    /// Whether it asks for the coordinates of the point.
+    pub fn varies(&self) -> bool {
+        matches!(self, Self::Varying(_))
+    }
+}
+
+impl FloatTexture {
+    /// The number at `point`.
+    #[inline]
+    pub fn number(&self, point: &SurfaceParameters) -> f32 {
+        match self {
+            Self::Uniform(value) => *value,
+            Self::Varying(pattern) => pattern.number(point),
+        }
+    }
+
+    /// Whether it asks for the coordinates of the point.
+    pub fn varies(&self) -> bool {
+        matches!(self, Self::Varying(_))
+    }
+}
+
+impl Pattern {
+    fn spectrum<C: Colour>(
+        &self,
+        point: &SurfaceParameters,
+        wavelengths: &C::Wavelengths,
+    ) -> C::Spectrum {
+        match self {
+            Self::Bitmap(bitmap) => bitmap.spectrum::<C>(point.uv, wavelengths),
+            Self::Checkerboard(board) => board.square(point).spectrum::<C>(point, wavelengths),
+        }
+    }
+
+    fn number(&self, point: &SurfaceParameters) -> f32 {
+        match self {
+            Self::Bitmap(bitmap) => bitmap.number(point.uv),
+            Self::Checkerboard(board) => board.other_square(point).number(point),
+        }
+    }
+
+    fn rgb(&self, point: &SurfaceParameters) -> [f32; 3] {
+        match self {
+            Self::Bitmap(bitmap) => bitmap.rgb(point.uv),
+            Self::Checkerboard(board) => board.square(point).rgb(point),
+        }
+    }
+
+    fn mean(&self) -> f32 {
+        match self {
+            Self::Bitmap(bitmap) => bitmap.mean(),
+            Self::Checkerboard(board) => board.mean(),
+        }
+    }
+}
+
+/// Luminance of linear sRGB (ITU-R BT.709).
+pub(super) fn luminance(rgb: [f32; 3]) -> f32 {
+    0.212_671 * rgb[0] + 0.715_160 * rgb[1] + 0.072_169 * rgb[2]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,125 @@
+//! The variant for all scenes: every vertex has a bsdf of any kind, in a frame of its own.
+
+use glam::Vec3;
+
+use super::variant::{Arrival, Scattering, Variant};
+use crate::lanes::{CHUNK, VectorLanes};
+use crate::sampling::{Frame, Sampler};
+use crate::scene::{Bsdf, BsdfSamples, BsdfValues, SeenPoint, SurfaceParameters};
+use crate::spectrum::{Colour, SpectrumArithmetic};
+
+/// See the module.
+pub(super) struct General;
+
+impl Variant for General {
+    type Scattering<S: SpectrumArithmetic> = Local<S>;
+    const CHOOSES_LOBES: bool = true;
+    const DISPERSES: bool = true;
+}
+
+/// A bsdf where a path has met it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Local<S> {
+    /// The shading frame of the side that was hit.
+    frame: Frame,
+    /// Unit direction to where the path comes from, in that frame.
+    outgoing: Vec3,
+    bsdf: Bsdf<S>,
+    /// Whether only the path's hero wavelength is left.
+    is_single: bool,
+}
+
+impl<S: SpectrumArithmetic> Local<S> {
+    /// What is left of `spectrum` on a path that wavelengths leave in different directions.
+    #[inline]
+    fn dispersed(&self, spectrum: S, is_dispersive: bool) -> S {
+        if is_dispersive && !self.is_single {
+            spectrum.only_hero()
+        } else {
+            spectrum
+        }
+    }
+}
+
+impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
+    #[inline]
+    fn at<C: Colour<Spectrum = S>>(arrival: &Arrival<C>, sampler: &mut Sampler) -> Option<Self> {
+        let Arrival {
+            material, point, ..
+        } = arrival;
+        let facing = arrival.side.facing(point.shading_normal);
+        let (frame, front, parameters) = if material.needs_parameters() {
+            let parameters = arrival.shape.geometry.parameters(&arrival.hit, point);
+            let front = parameters.shading_frame(point.shading_normal);
+            let frame = Frame {
+                normal: facing,
+                ..front
+            };
+            (frame, front, parameters)
+        } else {
+            let frame = Frame::about(facing);
+            (frame, frame, SurfaceParameters::default())
+        };
+        let choice = if material.is_mixed() {
+            sampler.material_choice(arrival.sequence, arrival.depth)
+        } else {
+            0.0
+        };
+        let seen = SeenPoint {
+            side: arrival.side,
+            frame: front,
+            outgoing: frame.to_local(-arrival.direction),
+            parameters,
+            choice,
+        };
+        Some(Self {
+            frame,
+            outgoing: seen.outgoing,
+            bsdf: material.bsdf::<C>(&seen, arrival.wavelengths)?,
+            is_single: arrival.is_single,
+        })
+    }
+
+    #[inline]
+    fn albedo(&self) -> S {
+        self.bsdf.albedo(self.outgoing)
+    }
+
+    #[inline]
+    fn shininess(&self) -> f32 {
+        self.bsdf.shininess(self.outgoing)
+    }
+
+    #[inline]
+    fn evaluate(
+        vertices: &[Self],
+        _normals: &VectorLanes<CHUNK>,
+        directions: &VectorLanes<CHUNK>,
+        values: &mut BsdfValues<S>,
+    ) {
+        for (lane, vertex) in vertices.iter().enumerate() {
+            let incident = vertex.frame.to_local(directions.get(lane));
+            let value = vertex.bsdf.evaluate(vertex.outgoing, incident);
+            values.value[lane] = vertex.dispersed(value.value, value.is_dispersive);
+            values.pdf[lane] = value.pdf.0;
+        }
+    }
+
+    #[inline]
+    fn sample<'a>(
+        vertices: impl Iterator<Item = &'a Self>,
+        _normals: &VectorLanes<CHUNK>,
+        [u, v, w]: &[[f32; CHUNK]; 3],
+        samples: &mut BsdfSamples<S>,
+    ) {
+        for (lane, vertex) in vertices.enumerate() {
+            let numbers = [u[lane], v[lane], w[lane]];
+            let sample = vertex.bsdf.sample(vertex.outgoing, numbers);
+            let direction = vertex.frame.to_world(sample.incident);
+            samples.direction.put(lane, direction);
+            samples.weight[lane] = vertex.dispersed(sample.weight, sample.is_dispersive);
+            samples.pdf[lane] = sample.pdf.0;
+            samples.is_single[lane] = vertex.is_single || sample.is_dispersive;
+        }
+    }
+}

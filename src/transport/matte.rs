@@ -1,0 +1,56 @@
+//! The variant for scenes whose surfaces are all diffuse, without textures: nothing but a reflectance is known of a vertex.
+
+use super::variant::{Arrival, Scattering, Variant};
+use crate::lanes::{CHUNK, VectorLanes};
+use crate::sampling::Sampler;
+use crate::scene::{BsdfSamples, BsdfValues, Diffuse};
+use crate::spectrum::{Colour, SpectrumArithmetic};
+
+/// See the module.
+pub(super) struct Matte;
+
+impl Variant for Matte {
+    type Scattering<S: SpectrumArithmetic> = Diffuse<S>;
+    const CHOOSES_LOBES: bool = false;
+    const DISPERSES: bool = false;
+}
+
+impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
+    #[inline(always)]
+    fn at<C: Colour<Spectrum = S>>(arrival: &Arrival<C>, _sampler: &mut Sampler) -> Option<Self> {
+        let reflectance = arrival.material.matte(arrival.side)?;
+        Some(Self {
+            reflectance: C::evaluate(reflectance, arrival.wavelengths),
+        })
+    }
+
+    #[inline(always)]
+    fn albedo(&self) -> S {
+        self.reflectance
+    }
+
+    #[inline(always)]
+    fn shininess(&self) -> f32 {
+        0.0
+    }
+
+    #[inline(always)]
+    fn evaluate(
+        vertices: &[Self],
+        normals: &VectorLanes<CHUNK>,
+        directions: &VectorLanes<CHUNK>,
+        values: &mut BsdfValues<S>,
+    ) {
+        values.evaluate_diffuse(vertices, normals, directions);
+    }
+
+    #[inline(always)]
+    fn sample<'a>(
+        vertices: impl Iterator<Item = &'a Self>,
+        normals: &VectorLanes<CHUNK>,
+        [u, v, _]: &[[f32; CHUNK]; 3],
+        samples: &mut BsdfSamples<S>,
+    ) {
+        samples.sample_diffuse(vertices, normals, u, v);
+    }
+}

@@ -1,0 +1,76 @@
+//! Variants of the engine: it is compiled once for scenes whose surfaces are all matte, and once for all others, so that
+//! nobody pays for what a scene does not call for.
+
+use std::fmt::Debug;
+
+use crate::lanes::{CHUNK, VectorLanes};
+use crate::sampling::{Sampler, SequencePoint};
+use crate::scene::{BsdfSamples, BsdfValues, HitCoordinates, Material, Shape, Side, SurfacePoint};
+use crate::spectrum::{Colour, SpectrumArithmetic};
+
+/// What the surfaces of a scene can do, as far as the engine is compiled for it.
+pub(super) trait Variant: Send + Sync + 'static {
+    /// How a surface scatters light at a vertex of a path that carries values `S`.
+    type Scattering<S: SpectrumArithmetic>: Scattering<S>;
+
+    /// Whether one of several lobes may be drawn: that takes a third random number for a direction.
+    const CHOOSES_LOBES: bool;
+
+    /// Whether wavelengths may be refracted apart.
+    const DISPERSES: bool;
+}
+
+/// A path arrives at a surface.
+pub(super) struct Arrival<'a, C: Colour> {
+    /// The shape.
+    pub shape: &'a Shape,
+    /// What it is made of.
+    pub material: &'a Material,
+    /// The side that the path sees.
+    pub side: Side,
+    /// Where it was hit.
+    pub point: SurfacePoint,
+    /// The same in the terms of the intersection layer.
+    pub hit: HitCoordinates,
+    /// The unit direction in which the path came, in world space.
+    pub direction: glam::Vec3,
+    /// Which wavelengths it carries.
+    pub wavelengths: &'a C::Wavelengths,
+    /// Whether of those only the hero is left.
+    pub is_single: bool,
+    /// Where it stands in its sequence of random numbers.
+    pub sequence: SequencePoint,
+    /// How often it has been scattered before.
+    pub depth: u32,
+}
+
+/// How a surface scatters light at one vertex. Directions are unit vectors in world space.
+pub(super) trait Scattering<S: SpectrumArithmetic>:
+    Copy + Debug + Send + Sync + 'static
+{
+    /// That of the surface at which a path arrives; `None` where it is black.
+    fn at<C: Colour<Spectrum = S>>(arrival: &Arrival<C>, sampler: &mut Sampler) -> Option<Self>;
+
+    /// The share of the arriving light that is scattered, in [0, 1].
+    fn albedo(&self) -> S;
+
+    /// See [`Bsdf::shininess`](crate::scene::Bsdf::shininess).
+    fn shininess(&self) -> f32;
+
+    /// Evaluates at most [`CHUNK`] vertices, each with the shading normal of the side that was hit and an incident direction.
+    fn evaluate(
+        vertices: &[Self],
+        normals: &VectorLanes<CHUNK>,
+        directions: &VectorLanes<CHUNK>,
+        values: &mut BsdfValues<S>,
+    );
+
+    /// Draws an incident direction for each of at most [`CHUNK`] vertices from uniform numbers in [0, 1); the third only where the
+    /// variant [chooses lobes](Variant::CHOOSES_LOBES).
+    fn sample<'a>(
+        vertices: impl Iterator<Item = &'a Self>,
+        normals: &VectorLanes<CHUNK>,
+        numbers: &[[f32; CHUNK]; 3],
+        samples: &mut BsdfSamples<S>,
+    );
+}
