@@ -26,12 +26,14 @@ pub use sensors::{
     CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis,
     ImageSize, Perspective, PixelFormat, Projection, ReconstructionFilter,
 };
-pub(crate) use shapes::{CornerLanes, SurfaceLanes};
 pub use shapes::{
-    Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape, ShapeSample, Sphere,
-    SurfaceParameters, SurfacePoint, TriangleAttributes, Triangles,
+    AttributesAt, Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape,
+    ShapeSample, Sphere, SurfaceParameters, SurfacePoint, TriangleAttributes, Triangles,
 };
-pub use textures::{Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture};
+pub(crate) use shapes::{CornerLanes, SurfaceLanes};
+pub use textures::{
+    AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture,
+};
 
 /// A shape of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
