@@ -33,7 +33,7 @@ const SURFACES: [(&str, &str, u32); 8] = [
     ("null", r#"<bsdf type="null"/>"#, 8),
     (
         "mask",
-        r#"<bsdf type="mask"><float name="opacity" value="0.3"/><bsdf type="dielectric"/></bsdf>"#,
+        r#"<bsdf type="mask"><float name="opacity" value="0.3"/><bsdf type="twosided"><bsdf type="conductor"/></bsdf></bsdf>"#,
         64,
     ),
     (
