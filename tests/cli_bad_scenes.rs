@@ -28,7 +28,13 @@ fn unknown_plugins_of_every_class() {
             "8:1",
             "obj, ply, rectangle, cube, sphere, disk, cylinder",
         ),
-        ("bsdf", "diffuse", "8:22", "diffuse, twosided"),
+        (
+            "bsdf",
+            "diffuse",
+            "8:22",
+            "diffuse, conductor, roughconductor, dielectric, roughdielectric, thindielectric, plastic, roughplastic, principled, \
+             principledthin, blendbsdf, mask, bumpmap, normalmap, null, twosided",
+        ),
         ("emitter", "constant", "9:1", "area, point, constant"),
     ] {
         let quoted = |name: &str| format!("type=\"{name}\"");
@@ -41,9 +47,9 @@ fn unknown_plugins_of_every_class() {
     }
     check(
         r#"<bsdf type="diffuse"/>"#,
-        r#"<bsdf type="diffuse"><texture type="checkerboard" name="reflectance"/></bsdf>"#,
+        r#"<bsdf type="diffuse"><texture type="marble" name="reflectance"/></bsdf>"#,
         "8:43",
-        "the texture `checkerboard` is not supported; supported are: none",
+        "the texture `marble` is not supported; supported are: bitmap, checkerboard, mesh_attribute",
     );
 }
 
@@ -85,6 +91,51 @@ fn values_out_of_range() {
             diffuse,
             r#"<bsdf type="diffuse"><spectrum name="reflectance" value="-0.5"/></bsdf>"#,
             "`reflectance`: reflectance -0.5 is not in the range from 0 to 1",
+        ),
+        (
+            diffuse,
+            r#"<bsdf type="roughconductor"><float name="alpha" value="-0.1"/></bsdf>"#,
+            "`alpha` is -0.1; a roughness must be a number from 0 on",
+        ),
+        (
+            diffuse,
+            r#"<bsdf type="roughconductor"><string name="material" value="Xy"/></bsdf>"#,
+            "the material `Xy` is not known; known are: none, Ag, Al",
+        ),
+        (
+            diffuse,
+            r#"<bsdf type="dielectric"><string name="int_ior" value="cheese"/></bsdf>"#,
+            "no index of refraction is known of `cheese`",
+        ),
+        (
+            diffuse,
+            r#"<bsdf type="dielectric"><float name="int_ior" value="0"/></bsdf>"#,
+            "`int_ior` has to be positive at all wavelengths",
+        ),
+        (
+            diffuse,
+            r#"<bsdf type="plastic"><spectrum name="int_ior" value="360:1.5, 830:1.4"/></bsdf>"#,
+            "`int_ior` of `plastic` has to be one number",
+        ),
+        (
+            diffuse,
+            r#"<bsdf type="principled"><float name="metallic" value="1.5"/></bsdf>"#,
+            "`metallic` is 1.5; it must be from 0 to 1",
+        ),
+        (
+            diffuse,
+            r#"<bsdf type="twosided"><bsdf type="dielectric"/></bsdf>"#,
+            "a `twosided` cannot contain the bsdf `dielectric`, which lets light through",
+        ),
+        (
+            diffuse,
+            r#"<bsdf type="blendbsdf"><bsdf type="diffuse"/><bsdf type="diffuse"/></bsdf>"#,
+            "needs the parameter `weight`",
+        ),
+        (
+            diffuse,
+            r#"<bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance"><string name="name" value="vertex_color"/></texture></bsdf>"#,
+            "the bsdf asks for the mesh attribute `vertex_color`, which this shape `sphere` does not have",
         ),
         (
             emitter,

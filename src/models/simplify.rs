@@ -40,6 +40,7 @@ pub fn simplify(mesh: &MeshData, wanted: usize) -> Result<MeshData, ModelsError>
     let positions = meshopt::optimize_vertex_fetch(&mut indices, &mesh.positions);
     let (triangles, _) = indices.as_chunks();
     Ok(MeshData {
+        attributes: Vec::new(),
         triangles: triangles
             .iter()
             .copied()

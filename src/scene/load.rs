@@ -184,6 +184,7 @@ impl<'d> Loader<'d> {
             Some(child) => self.material(&child.object)?,
             None => self.default_material(light.is_some()),
         };
+        keep_attributes(object, &mut geometry, &self.materials[material.index()])?;
         let id = ShapeId(self.shapes.len() as u32);
         let emitter = match light {
             Some(child) => {
@@ -206,6 +207,36 @@ impl<'d> Loader<'d> {
         });
         Ok(())
     }
+}
+
+/// Keeps of what a shape's mesh says what its material asks for; it is an error if that is not there.
+fn keep_attributes(
+    object: &Object,
+    geometry: &mut Geometry,
+    material: &Material,
+) -> Result<(), SceneError> {
+    let names = material.attributes();
+    let missing = match geometry {
+        Geometry::Triangles(mesh) => mesh.keep_attributes(&names).err(),
+        _ => names.first().copied(),
+    };
+    if let Some(missing) = missing {
+        return Err(object.error(format!(
+            "the bsdf asks for the mesh attribute `{missing}`, which this {object} does not have"
+        )));
+    }
+    let Geometry::Triangles(mesh) = geometry else {
+        return Ok(());
+    };
+    for attribute in mesh.named_attributes() {
+        if let Some(number) = attribute.colour_outside_unit() {
+            return Err(object.error(format!(
+                "the mesh attribute `{}` has {number}; colours are linear sRGB from 0 to 1",
+                attribute.name
+            )));
+        }
+    }
+    Ok(())
 }
 
 impl IndependentSampler {

@@ -37,12 +37,14 @@ pub use sensors::{
     FilmError, FovAxis, ImageSize, Orthographic, OrthographicView, Perspective, PinholeView,
     PixelFormat, ReconstructionFilter, ThinLens, ThinLensView,
 };
-pub(crate) use shapes::{CornerLanes, Parallelogram, SurfaceLanes};
 pub use shapes::{
-    Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape, ShapeSample, Sphere,
-    SurfaceParameters, SurfacePoint, TriangleAttributes, Triangles,
+    AttributesAt, Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape,
+    ShapeSample, Sphere, SurfaceParameters, SurfacePoint, TriangleAttributes, Triangles,
 };
-pub use textures::{Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture};
+pub(crate) use shapes::{CornerLanes, Parallelogram, SurfaceLanes};
+pub use textures::{
+    AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture,
+};
 
 /// A shape of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

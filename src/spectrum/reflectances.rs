@@ -8,7 +8,7 @@ use super::values::Spectrum;
 use super::wavelengths::Wavelengths;
 
 /// Reflectances, each by its colour under D65. Their spectra are found when the first of them is asked for.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Reflectances {
     rgb: Vec<[f32; 3]>,
     spectra: OnceLock<Vec<SigmoidPolynomial>>,
@@ -27,6 +27,11 @@ impl Reflectances {
     #[inline]
     pub fn rgb(&self, entry: usize) -> [f32; 3] {
         self.rgb[entry]
+    }
+
+    /// The colours of all entries.
+    pub fn all_rgb(&self) -> &[[f32; 3]] {
+        &self.rgb
     }
 
     /// The values of an entry at `wavelengths`.

@@ -30,6 +30,8 @@ pub struct Material {
     tree: Surface,
     needs_parameters: bool,
     is_mixed: bool,
+    /// The mesh attributes that it asks for.
+    attributes: Vec<String>,
 }
 
 /// A bsdf of the scene file with those that it contains.
@@ -71,7 +73,7 @@ pub(super) enum Surface {
 
 /// A point of a surface as a path sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct SeenPoint {
+pub struct SeenPoint<'s> {
     /// The side that is seen.
     pub side: Side,
     /// The shading frame of the front, in world space. Local directions are in this frame, its normal turned to the side seen.
@@ -79,7 +81,7 @@ pub struct SeenPoint {
     /// Unit direction to where the path comes from, local; z > 0.
     pub outgoing: Vec3,
     /// Coordinates and tangents, which mean something where [`Material::needs_parameters`].
-    pub parameters: SurfaceParameters,
+    pub parameters: SurfaceParameters<'s>,
     /// A uniform number in [0, 1) that draws one of the materials mixed here; used where [`Material::is_mixed`].
     pub choice: f32,
 }
@@ -96,6 +98,7 @@ impl Material {
         Self {
             needs_parameters: tree.needs_parameters(),
             is_mixed: tree.is_mixed(),
+            attributes: Vec::new(),
             tree,
         }
     }
@@ -111,6 +114,11 @@ impl Material {
     #[inline]
     pub fn needs_parameters(&self) -> bool {
         self.needs_parameters
+    }
+
+    /// The names of the mesh attributes that it asks for.
+    pub(in crate::scene) fn attributes(&self) -> Vec<&str> {
+        self.attributes.iter().map(String::as_str).collect()
     }
 
     /// Whether one of several materials is drawn at every point.
@@ -167,7 +175,11 @@ pub(in crate::scene) fn load(
     object: &Object,
     textures: &mut TextureLoader,
 ) -> Result<Material, SceneError> {
-    Surface::load(object, textures).map(Material::new)
+    let tree = Surface::load(object, textures)?;
+    Ok(Material {
+        attributes: textures.take_attributes(),
+        ..Material::new(tree)
+    })
 }
 
 const SUPPORTED: [&str; 16] = [

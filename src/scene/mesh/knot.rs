@@ -80,6 +80,7 @@ pub fn knot(triangles: usize) -> MeshData {
         .collect();
 
     MeshData {
+        attributes: Vec::new(),
         positions,
         normals: None,
         uvs: None,

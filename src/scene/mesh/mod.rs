@@ -1,5 +1,6 @@
 //! Triangle meshes as files hold them and as generators make them.
 
+mod attribute;
 mod check;
 mod error;
 pub mod knot;
@@ -9,6 +10,7 @@ pub mod ply;
 pub mod serialized;
 mod write;
 
+pub use attribute::{AttributeValues, MeshAttribute};
 pub use error::{MeshError, MeshProblem};
 pub use normals::smooth_normals;
 pub use write::{write_ply, write_ply_to};
@@ -25,6 +27,8 @@ pub struct MeshData {
     pub normals: Option<Vec<[f32; 3]>>,
     /// Texture coordinates, one per position, when the source has them.
     pub uvs: Option<Vec<[f32; 2]>>,
+    /// What the source says of vertices and faces beside this.
+    pub attributes: Vec<MeshAttribute>,
     /// Vertex indices of the triangles, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
 }

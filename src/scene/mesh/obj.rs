@@ -51,6 +51,7 @@ fn mesh_data(mesh: tobj::Mesh, flip_tex_coords: bool) -> MeshData {
     }
     let normals = grouped(&mesh.normals);
     MeshData {
+        attributes: Vec::new(),
         positions: grouped(&mesh.positions),
         triangles: grouped(&mesh.indices),
         normals: (!normals.is_empty()).then_some(normals),

@@ -51,6 +51,7 @@ pub(crate) fn cube() -> MeshData {
     const UVS: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
     let firsts = (0..24).step_by(4);
     MeshData {
+        attributes: Vec::new(),
         positions: SIDES.concat(),
         normals: None,
         uvs: Some(UVS.repeat(SIDES.len())),

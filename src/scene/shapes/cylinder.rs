@@ -121,7 +121,7 @@ impl Cylinder {
         &self,
         hit: &HitCoordinates,
         point: &SurfacePoint,
-    ) -> SurfaceParameters {
+    ) -> SurfaceParameters<'static> {
         let radial = hit.normal.normalize_or_zero();
         let [x, y] = self.across.map(|axis| axis.dot(radial));
         let angle = y.atan2(x).rem_euclid(2.0 * PI);
@@ -131,6 +131,7 @@ impl Cylinder {
             dp_du: around * (2.0 * PI * self.radius),
             dp_dv: self.axis,
             geometric_normal: point.geometric_normal,
+            attributes: None,
         }
     }
 

@@ -91,7 +91,7 @@ impl Disk {
         &self,
         hit: &HitCoordinates,
         point: &SurfacePoint,
-    ) -> SurfaceParameters {
+    ) -> SurfaceParameters<'static> {
         let place = Vec2::new(hit.u, hit.v);
         let (distance, azimuth) = (place.length(), place.try_normalize().unwrap_or(Vec2::X));
         let angle = azimuth.y.atan2(azimuth.x).rem_euclid(2.0 * PI);
@@ -101,6 +101,7 @@ impl Disk {
             dp_du: self.axis_u * azimuth.x + self.axis_v * azimuth.y,
             dp_dv: around * (2.0 * PI * distance),
             geometric_normal: point.geometric_normal,
+            attributes: None,
         }
     }
 

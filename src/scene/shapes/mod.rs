@@ -18,7 +18,7 @@ pub use cylinder::{Cylinder, CylinderHit};
 pub use disk::{Disk, DiskHit};
 pub(crate) use lanes::{CornerLanes, SurfaceLanes};
 pub(crate) use mesh_sampling::Parallelogram;
-pub use parameters::SurfaceParameters;
+pub use parameters::{AttributesAt, SurfaceParameters};
 pub use sphere::Sphere;
 pub use triangles::{TriangleAttributes, Triangles};
 
@@ -223,7 +223,7 @@ impl Geometry {
     }
 
     /// Where the point `point` of a hit lies on the shape.
-    pub fn parameters(&self, hit: &HitCoordinates, point: &SurfacePoint) -> SurfaceParameters {
+    pub fn parameters(&self, hit: &HitCoordinates, point: &SurfacePoint) -> SurfaceParameters<'_> {
         match self {
             Self::Triangles(shape) => shape.parameters(hit, point),
             Self::Sphere(shape) => shape.parameters(point),

@@ -3,11 +3,12 @@
 use glam::{Vec2, Vec3};
 
 use crate::sampling::Frame;
+use crate::scene::mesh::MeshAttribute;
 
 /// Where a point lies on its surface. Unlike a [`SurfacePoint`](super::SurfacePoint), which every vertex has, it is found only where
 /// the material asks for it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct SurfaceParameters {
+pub struct SurfaceParameters<'s> {
     /// Texture coordinates.
     pub uv: Vec2,
     /// Derivative of the position by u, in world space.
@@ -16,9 +17,24 @@ pub struct SurfaceParameters {
     pub dp_dv: Vec3,
     /// Unit normal of the true surface on the front, in world space.
     pub geometric_normal: Vec3,
+    /// What the mesh says of the point, if it says anything.
+    pub attributes: Option<AttributesAt<'s>>,
 }
 
-impl SurfaceParameters {
+/// The attributes of a mesh and where a point lies in it.
+#[derive(Clone, Copy, Debug)]
+pub struct AttributesAt<'s> {
+    /// Everything that the mesh says of vertices and triangles.
+    pub attributes: &'s [MeshAttribute],
+    /// The triangle.
+    pub triangle: u32,
+    /// Its vertices.
+    pub corners: [u32; 3],
+    /// Barycentric coordinates of the second and third of them.
+    pub barycentric: [f32; 2],
+}
+
+impl SurfaceParameters<'_> {
     /// The frame about the unit shading normal `normal` whose tangent goes in the direction of u.
     pub fn shading_frame(&self, normal: Vec3) -> Frame {
         let across = self.dp_du - normal * normal.dot(self.dp_du);
@@ -68,7 +84,8 @@ mod tests {
             Geometry::Triangles(mesh) => {
                 let meet = |primitive: u32| {
                     let corners = mesh.corners(primitive);
-                    let [a, b, c] = corners.map(|i| Vec3::from(mesh.positions()[i as usize]));
+                    let [a, b, c] =
+                        corners.map(|i| Vec3::from(mesh.vertices()[i as usize].position));
                     let matrix = glam::Mat3::from_cols(b - a, c - a, -direction);
                     let solution = matrix.inverse() * (origin - a);
                     let inside =
@@ -92,7 +109,7 @@ mod tests {
     #[test]
     fn coordinates_are_mitsubas() {
         let rays = [
-            ([3.0, 2.0, 4.0], [-0.601_104_6, -0.319_336_8, -0.732_596_24]),
+            ([3.0, 2.0, 4.0], [-0.601_104_6, -0.319_336_8, -0.732_596_2]),
             ([-3.0, 2.5, -4.0], [0.547_238_7, -0.388_363, 0.741_420_2]),
             ([5.0, 0.3, 0.2], [-1.0, 0.0, 0.0]),
             ([0.1, 0.2, 5.0], [0.0, 0.0, -1.0]),
@@ -140,7 +157,7 @@ mod tests {
                 cylinder,
                 2,
                 [0.91397, 0.63927],
-                [-0.73040, 10.01740, -0.42773],
+                [-0.73040, 10.017_4, -0.42773],
                 [1.71190, 0.25267, 2.99425],
                 [-0.07265, 0.99645, -0.04255],
             ),

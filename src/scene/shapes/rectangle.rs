@@ -10,6 +10,7 @@ use crate::scene::mesh::MeshData;
 /// The rectangle in its own space.
 pub(crate) fn rectangle() -> MeshData {
     MeshData {
+        attributes: Vec::new(),
         positions: vec![
             [-1.0, -1.0, 0.0],
             [1.0, -1.0, 0.0],

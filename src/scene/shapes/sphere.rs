@@ -88,7 +88,7 @@ impl Sphere {
     }
 
     /// u is the longitude and v the angle from the pole, in units of the whole circle and of the half.
-    pub(super) fn parameters(&self, point: &SurfacePoint) -> SurfaceParameters {
+    pub(super) fn parameters(&self, point: &SurfacePoint) -> SurfaceParameters<'static> {
         let local = self.axes.transpose() * ((point.position - self.center) / self.radius);
         let across = Vec2::new(local.x, local.y).length();
         let azimuth = Vec2::new(local.x, local.y)
@@ -102,6 +102,7 @@ impl Sphere {
             dp_du: self.axes * along_u * self.radius,
             dp_dv: self.axes * along_v * self.radius,
             geometric_normal: point.geometric_normal,
+            attributes: None,
         }
     }
 

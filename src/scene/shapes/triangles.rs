@@ -6,11 +6,13 @@ use glam::{DVec3, Vec2, Vec3};
 
 use super::lanes::{CornerLanes, SurfaceLanes};
 use super::mesh_sampling::{MeshSampling, Parallelogram};
-use super::{Geometry, HitCoordinates, Placement, ShapeSample, SurfaceParameters, SurfacePoint};
+use super::{
+    AttributesAt, Geometry, HitCoordinates, Placement, ShapeSample, SurfaceParameters, SurfacePoint,
+};
 use crate::embree::{IndexBuffer, Vertex, VertexBuffer};
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;
-use crate::scene::mesh::{self, MeshData};
+use crate::scene::mesh::{self, MeshAttribute, MeshData};
 use crate::scene::xml::Object;
 
 /// A triangle mesh in world space. Its buffers are shared with the intersection layer, not copied.
@@ -31,6 +33,8 @@ pub struct TriangleAttributes {
     pub is_smooth: bool,
     /// Texture coordinates of the vertices.
     pub uvs: Option<Vec<[f32; 2]>>,
+    /// What else is said of vertices and triangles.
+    pub named: Vec<MeshAttribute>,
     /// Whether the clockwise side of the triangles is the outer one.
     pub flip_normals: bool,
 }
@@ -95,6 +99,7 @@ impl Triangles {
         let attributes = TriangleAttributes {
             is_smooth: normals.is_some(),
             uvs: mesh.uvs.take(),
+            named: std::mem::take(&mut mesh.attributes),
             flip_normals: placement.flip_normals,
         };
         let vertices = Arc::new(match normals {
@@ -153,6 +158,27 @@ impl Triangles {
         &self.indices
     }
 
+    /// Keeps of the named attributes those that are among `names`; the first of the names that there is nothing of is an error.
+    pub(in crate::scene) fn keep_attributes<'n>(
+        &mut self,
+        names: &[&'n str],
+    ) -> Result<(), &'n str> {
+        let named = &mut self.attributes.named;
+        named.retain(|attribute| names.contains(&attribute.name.as_str()));
+        match names
+            .iter()
+            .find(|&&name| named.iter().all(|found| found.name != name))
+        {
+            Some(missing) => Err(missing),
+            None => Ok(()),
+        }
+    }
+
+    /// The named attributes.
+    pub(in crate::scene) fn named_attributes(&self) -> &[MeshAttribute] {
+        &self.attributes.named
+    }
+
     /// Whether the mesh is shaded with vertex normals.
     pub fn is_smooth(&self) -> bool {
         self.attributes.is_smooth
@@ -177,17 +203,25 @@ impl Triangles {
         &self,
         hit: &HitCoordinates,
         point: &SurfacePoint,
-    ) -> SurfaceParameters {
+    ) -> SurfaceParameters<'_> {
         let corners = self.corners(hit.primitive).map(|i| i as usize);
         let [a, b, c] = corners.map(|i| Vec3::from(self.vertices[i].position));
         let (ab, ac) = (b - a, c - a);
         let geometric_normal = point.geometric_normal;
+        let named = &self.attributes.named;
+        let attributes = (!named.is_empty()).then(|| AttributesAt {
+            attributes: named,
+            triangle: hit.primitive,
+            corners: self.corners(hit.primitive),
+            barycentric: [hit.u, hit.v],
+        });
         let Some(uvs) = &self.attributes.uvs else {
             return SurfaceParameters {
                 uv: Vec2::new(hit.u, hit.v),
                 dp_du: ab,
                 dp_dv: ac,
                 geometric_normal,
+                attributes,
             };
         };
         let [uv_a, uv_b, uv_c] = corners.map(|i| Vec2::from(uvs[i]));
@@ -209,6 +243,7 @@ impl Triangles {
             dp_du,
             dp_dv,
             geometric_normal,
+            attributes,
         }
     }
 

@@ -7,7 +7,10 @@ use std::sync::Arc;
 use glam::{Affine2, DMat4, Mat2, Vec2};
 
 use super::bitmap::Texels;
-use super::{Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture, image_file, luminance};
+use super::{
+    AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture, image_file,
+    luminance,
+};
 use crate::scene::error::SceneError;
 use crate::scene::spectra::{Quantity, Stated, number, stated};
 use crate::scene::xml::{Document, Object, SpectrumProperty};
@@ -18,6 +21,8 @@ pub(in crate::scene) struct TextureLoader<'d> {
     document: &'d Document,
     /// Images by file and by whether they are raw.
     images: HashMap<(PathBuf, bool), Arc<Texels>>,
+    /// Mesh attributes that textures asked for since they were [taken](Self::take_attributes).
+    attributes: Vec<String>,
 }
 
 /// What a texture turned out to be.
@@ -32,7 +37,13 @@ impl<'d> TextureLoader<'d> {
         Self {
             document,
             images: HashMap::new(),
+            attributes: Vec::new(),
         }
+    }
+
+    /// The names of the mesh attributes that the textures loaded since the last call ask for.
+    pub fn take_attributes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.attributes)
     }
 
     /// The reflectance or transmittance that `object` has under `name`, or the grey `default`.
@@ -105,7 +116,12 @@ impl<'d> TextureLoader<'d> {
                 let board = Checkerboard::load(object, self)?;
                 Ok(Loaded::Pattern(Pattern::Checkerboard(Box::new(board))))
             }
-            _ => Err(object.unsupported(&["bitmap", "checkerboard"])),
+            "mesh_attribute" => {
+                let attribute = AttributeTexture::load(object)?;
+                self.attributes.push(attribute.name.clone());
+                Ok(Loaded::Pattern(Pattern::Attribute(attribute)))
+            }
+            _ => Err(object.unsupported(&["bitmap", "checkerboard", "mesh_attribute"])),
         }
     }
 

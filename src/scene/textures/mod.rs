@@ -7,10 +7,12 @@ mod bitmap;
 mod checkerboard;
 mod image_file;
 mod loader;
+mod mesh_attribute;
 
 pub use bitmap::Bitmap;
 pub use checkerboard::Checkerboard;
 pub(super) use loader::TextureLoader;
+pub use mesh_attribute::AttributeTexture;
 
 use super::shapes::SurfaceParameters;
 use crate::spectrum::{Colour, SpectralCurve};
@@ -40,6 +42,8 @@ pub enum Pattern {
     Bitmap(Bitmap),
     /// `checkerboard`
     Checkerboard(Box<Checkerboard>),
+    /// `mesh_attribute`
+    Attribute(AttributeTexture),
 }
 
 impl SpectrumTexture {
@@ -111,6 +115,7 @@ impl Pattern {
         match self {
             Self::Bitmap(bitmap) => bitmap.spectrum::<C>(point.uv, wavelengths),
             Self::Checkerboard(board) => board.square(point).spectrum::<C>(point, wavelengths),
+            Self::Attribute(attribute) => attribute.spectrum::<C>(point, wavelengths),
         }
     }
 
@@ -118,6 +123,7 @@ impl Pattern {
         match self {
             Self::Bitmap(bitmap) => bitmap.number(point.uv),
             Self::Checkerboard(board) => board.other_square(point).number(point),
+            Self::Attribute(attribute) => attribute.number(point),
         }
     }
 
@@ -125,6 +131,7 @@ impl Pattern {
         match self {
             Self::Bitmap(bitmap) => bitmap.rgb(point.uv),
             Self::Checkerboard(board) => board.square(point).rgb(point),
+            Self::Attribute(attribute) => attribute.rgb(point),
         }
     }
 
@@ -132,6 +139,8 @@ impl Pattern {
         match self {
             Self::Bitmap(bitmap) => bitmap.mean(),
             Self::Checkerboard(board) => board.mean(),
+            // What a mesh says is not known before its shape is.
+            Self::Attribute(_) => 0.5,
         }
     }
 }

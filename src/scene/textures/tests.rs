@@ -12,7 +12,7 @@ use crate::spectrum::{Rgb, Spectral, SpectrumArithmetic, Wavelengths};
 /// Where Mitsuba was asked, in texture coordinates.
 const UVS: [[f32; 2]; 3] = [[0.1, 0.2], [0.73, 0.41], [-0.3, 1.7]];
 
-fn at(uv: [f32; 2]) -> SurfaceParameters {
+fn at(uv: [f32; 2]) -> SurfaceParameters<'static> {
     SurfaceParameters {
         uv: Vec2::from(uv),
         ..SurfaceParameters::default()
@@ -185,7 +185,9 @@ fn lookups_are_mitsubas() {
 }
 
 /// `wrap_mode`, `filter_type`, the values and their gradients.
-const LOOKUPS: [(&str, &str, [f32; 3], [[f32; 2]; 3]); 6] = [
+type Lookup = (&'static str, &'static str, [f32; 3], [[f32; 2]; 3]);
+
+const LOOKUPS: [Lookup; 6] = [
     (
         "repeat",
         "nearest",
@@ -279,7 +281,7 @@ fn what_is_wrong_with_an_image_is_told() {
         ),
         (
             colour(r#"<texture type="marble" name="t"/>"#, Path::new("")).unwrap_err(),
-            "supported are: bitmap, checkerboard",
+            "supported are: bitmap, checkerboard, mesh_attribute",
         ),
     ] {
         assert!(message.contains(part), "{message}");

@@ -218,6 +218,7 @@ fn seen<C: Colour>(
             dp_du: Vec3::X,
             dp_dv: Vec3::Y,
             geometric_normal: Vec3::Z,
+            attributes: None,
         },
         choice,
     };

@@ -1,5 +1,6 @@
 //! PLY files: ASCII and both binary orders, every scalar type, triangles and polygons.
 
+mod attributes;
 mod header;
 mod numbers;
 
@@ -14,7 +15,7 @@ use super::{MeshData, MeshError, MeshProblem, check};
 ///
 /// Taken are the positions x, y, z, the normals nx, ny, nz (normalised), the texture coordinates u, v or texture_u,
 /// texture_v or s, t, and the faces of the list vertex_index or vertex_indices; a polygon becomes a fan around its
-/// first vertex. Everything else in the file is skipped.
+/// first vertex. Of the rest, `attributes.rs` says what becomes an attribute; everything else is skipped.
 ///
 /// # Errors
 /// When the file cannot be read, is not PLY, is truncated, holds no triangle, names a vertex that does not exist or
@@ -87,6 +88,7 @@ fn read_vertices(
         .or_else(|| parts(element, ["s", "t"]));
     let mut normals = normal.map(|_| Vec::with_capacity(capacity));
     let mut uvs = uv.map(|_| Vec::with_capacity(capacity));
+    let mut columns = attributes::columns(element, false);
     mesh.positions.reserve_exact(capacity);
     let mut values = vec![0.0_f32; element.properties.len()];
     for index in 0..element.count {
@@ -107,7 +109,12 @@ fn read_vertices(
         if let (Some(uvs), Some(parts)) = (&mut uvs, uv) {
             uvs.push(parts.map(|part| values[part]));
         }
+        for column in &mut columns {
+            column.push(&values, 1)?;
+        }
     }
+    mesh.attributes
+        .extend(columns.into_iter().map(attributes::Column::finish));
     mesh.normals = normals;
     mesh.uvs = uvs;
     Ok(())
@@ -130,13 +137,15 @@ fn read_faces(
             MeshProblem::Format(message.to_owned())
         })?;
     mesh.triangles.reserve(capacity);
+    let mut columns = attributes::columns(element, true);
+    let mut values = vec![0.0_f32; element.properties.len()];
     let mut polygon = Vec::new();
     for face in 0..element.count {
         for (position, property) in element.properties.iter().enumerate() {
             let in_face = |error| failure(error, element, face);
             match property.kind {
                 Kind::Scalar(scalar) => {
-                    numbers.next(scalar).map_err(in_face)?;
+                    values[position] = numbers.next(scalar).map_err(in_face)? as f32;
                 }
                 Kind::List { count, item } if position == corners => {
                     polygon.clear();
@@ -148,7 +157,12 @@ fn read_faces(
             }
         }
         add_polygon(&polygon, face, vertex_count, &mut mesh.triangles)?;
+        for column in &mut columns {
+            column.push(&values, polygon.len().saturating_sub(2))?;
+        }
     }
+    mesh.attributes
+        .extend(columns.into_iter().map(attributes::Column::finish));
     Ok(())
 }
 

@@ -306,6 +306,7 @@ proptest! {
         with_normals in any::<bool>(),
     ) {
         let mesh = MeshData {
+            attributes: Vec::new(),
             normals: with_normals.then(|| vec![[0.0, 0.0, -1.0]; positions.len()]),
             triangles: corners.iter().map(|corner| corner.map(|index| index.index(positions.len()) as u32)).collect(),
             positions,

@@ -1,0 +1,36 @@
+//! What a mesh says of its vertices or faces beside the form, such as a colour.
+
+use crate::spectrum::Reflectances;
+
+/// Something that a mesh says of all vertices or of all faces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshAttribute {
+    /// `vertex_` or `face_` and what the file calls it.
+    pub name: String,
+    /// Whether it belongs to faces; otherwise it belongs to vertices.
+    pub is_of_faces: bool,
+    /// Its values, in the order of the vertices or of the triangles.
+    pub values: AttributeValues,
+}
+
+/// The values of an attribute.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AttributeValues {
+    /// One number each.
+    Numbers(Vec<f32>),
+    /// A colour each, linear sRGB.
+    Colours(Reflectances),
+}
+
+impl MeshAttribute {
+    /// The first colour component that is not in [0, 1].
+    pub fn colour_outside_unit(&self) -> Option<f32> {
+        match &self.values {
+            AttributeValues::Numbers(_) => None,
+            AttributeValues::Colours(colours) => {
+                let mut components = colours.all_rgb().iter().flatten().copied();
+                components.find(|component| !(0.0..=1.0).contains(component))
+            }
+        }
+    }
+}
