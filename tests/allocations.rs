@@ -2,6 +2,7 @@
 
 use std::alloc::System;
 use std::error::Error;
+use std::sync::Arc;
 
 use cohort::film::{Film, FilmSums};
 use cohort::render::{Render, Settings};
@@ -18,13 +19,14 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Not under the test harness, whose own thread allocates beside.
 fn main() -> Result<(), Box<dyn Error>> {
+    // Once: the threads that make the mesh put their own things in order afterwards.
+    let scene = Arc::new(Scene::built_in(&LoadOptions {
+        definitions: vec![("res".into(), "32".into())],
+        ..LoadOptions::default()
+    })?);
+    let size = scene.film.crop.size;
     for kind in StrategyKind::ALL {
         for sampler in SamplerKind::ALL {
-            let scene = Scene::built_in(&LoadOptions {
-                definitions: vec![("res".into(), "32".into())],
-                ..LoadOptions::default()
-            })?;
-            let size = scene.film.crop.size;
             let settings = Settings {
                 strategy: kind.build(&StrategyOptions::default())?,
                 sampler,
@@ -32,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 max_depth: std::num::NonZeroU32::new(12),
                 ..Settings::default()
             };
-            let render = Render::new(scene.into(), settings)?;
+            let render = Render::new(Arc::clone(&scene), settings)?;
             let tracers: [Box<dyn TraceBatches>; 2] = [
                 Box::<Tracer<Rgb>>::default(),
                 Box::<Tracer<Spectral<4>>>::default(),
