@@ -71,6 +71,7 @@ impl Case {
             "fragments/floor.xml",
             "octahedron.obj",
             "tent.obj",
+            "coloured.ply",
             "colours.png",
             "heights.png",
             "normals.png",
