@@ -19,7 +19,16 @@ const SCENE: &str = r#"<scene version="3.0.0"><default name="spp" value="1"/>
 <bsdf type="diffuse" id="red"><spectrum name="reflectance" value="400:0.1, 600:0.2, 700:0.7"/></bsdf>
 <shape type="sphere"><point name="center" x="1" y="0" z="0"/><float name="radius" value="0.5"/><ref id="white"/></shape>
 <shape type="cylinder"><point name="p0" x="-1" y="0" z="0"/><point name="p1" x="0" y="1" z="0"/><ref id="red"/></shape>
-<shape type="disk"><transform name="to_world"><scale value="2"/><rotate x="1" angle="30"/></transform></shape>
+<shape type="sphere"><point name="center" x="-1" y="-1" z="0"/><float name="radius" value="0.4"/><bsdf type="mask"><float name="opacity" value="0.7"/>
+<bsdf type="roughdielectric"><string name="distribution" value="ggx"/><float name="alpha" value="0.2"/><float name="int_ior" value="1.6"/></bsdf></bsdf></shape>
+<shape type="sphere"><point name="center" x="0" y="-1" z="0"/><float name="radius" value="0.4"/><bsdf type="principled">
+<rgb name="base_color" value="0.4, 0.5, 0.6"/><float name="spec_trans" value="0.5"/><float name="eta" value="1.4"/><float name="clearcoat" value="0.5"/></bsdf></shape>
+<shape type="sphere"><point name="center" x="1" y="-1" z="0"/><float name="radius" value="0.4"/><bsdf type="blendbsdf"><float name="weight" value="0.5"/>
+<bsdf type="roughplastic"><float name="alpha" value="0.3"/></bsdf><bsdf type="normalmap"><rgb name="normalmap" value="0.6, 0.5, 0.9"/>
+<bsdf type="roughconductor"><string name="material" value="Au"/><float name="alpha_u" value="0.1"/><float name="alpha_v" value="0.3"/></bsdf></bsdf></bsdf></shape>
+<shape type="sphere"><point name="center" x="2" y="-1" z="0"/><float name="radius" value="0.4"/><bsdf type="dielectric">
+<spectrum name="int_ior" type="sellmeier"><vector name="b" x="1" y="0.2" z="1"/><vector name="c" x="0.006" y="0.02" z="103"/></spectrum></bsdf></shape>
+<shape type="disk"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance"><transform name="to_uv"><scale x="4"/></transform></texture></bsdf><transform name="to_world"><scale value="2"/><rotate x="1" angle="30"/></transform></shape>
 <shape type="cube"><transform name="to_world"><translate y="-3"/></transform><ref id="white"/></shape>
 <shape type="rectangle"><transform name="to_world"><rotate y="1" angle="180"/><translate x="0" z="7"/></transform>
 <emitter type="area"><float name="radiance" value="5"/></emitter></shape>

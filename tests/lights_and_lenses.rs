@@ -85,7 +85,7 @@ fn lit_plane(light: &str) -> f64 {
         <shape type="rectangle"><transform name="to_world"><scale value="5"/></transform>
             <bsdf type="diffuse"><rgb name="reflectance" value="0.7"/></bsdf></shape>{light}"#
     ));
-    let ours = replicates(&scene, settings(SamplerKind::Independent), 0..2, 4);
+    let ours = replicates(&scene, settings(SamplerKind::Independent), 0..64, 4);
     let [mean, ..] = ours.means();
     mean.mean
 }

@@ -73,6 +73,7 @@ impl Case {
             "octahedron.obj",
             "tent.obj",
             "sky.pfm",
+            "coloured.ply",
             "colours.png",
             "heights.png",
             "normals.png",

@@ -90,7 +90,7 @@ fn render_all(
 
 /// Where all samples are the same but for single-precision rounding, their noise is not random: this share of the
 /// squared mean does not count.
-const ROUNDING: f64 = 5e-8;
+const ROUNDING: f64 = 1e-8;
 
 /// Compares the variance of pixels that the film believed in, in the mean over the image, with the one between images.
 fn check_believed_noise(what: &str, replicates: &Replicates, believed: [f64; 3]) {

@@ -6,7 +6,8 @@
 //! | (any names) | bsdf, twice | the two bsdfs, in the order of the file | required |
 
 use super::Bsdf;
-use super::material::{SeenPoint, Surface};
+use super::material::SeenPoint;
+use super::surface::Surface;
 use crate::scene::error::SceneError;
 use crate::scene::textures::{FloatTexture, TextureLoader};
 use crate::scene::xml::{Class, Object};

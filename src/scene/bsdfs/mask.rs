@@ -5,7 +5,8 @@
 //! | `opacity` | float, spectrum or texture | share of the light that meets the bsdf; the rest passes; limited to [0, 1] | 0.5 |
 //! | (any name) | bsdf | the bsdf | required |
 
-use super::material::{SeenPoint, Surface};
+use super::material::SeenPoint;
+use super::surface::Surface;
 use super::{Bsdf, Model, Null};
 use crate::scene::error::SceneError;
 use crate::scene::textures::{FloatTexture, TextureLoader};

@@ -34,6 +34,7 @@ mod rough_plastic;
 mod roughness;
 mod sellmeier;
 mod side;
+mod surface;
 mod thin_dielectric;
 mod twosided;
 

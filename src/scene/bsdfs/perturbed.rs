@@ -10,7 +10,8 @@
 
 use glam::Vec3;
 
-use super::material::{SeenPoint, Surface};
+use super::material::SeenPoint;
+use super::surface::Surface;
 use super::{BsdfSample, BsdfValue, Model};
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;

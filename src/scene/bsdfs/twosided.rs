@@ -2,7 +2,7 @@
 //!
 //! It contains one bsdf for both sides, or two: the first for the front, the second for the back. They must not let light through.
 
-use super::material::Surface;
+use super::surface::Surface;
 use crate::scene::error::SceneError;
 use crate::scene::textures::TextureLoader;
 use crate::scene::xml::{Child, Class, Object};

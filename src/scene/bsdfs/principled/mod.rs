@@ -4,9 +4,11 @@
 //! Scattering", as Mitsuba has them. This file has the lobes that both share.
 
 mod solid;
+mod solid_material;
 mod thin;
 
-pub use solid::{Principled, PrincipledMaterial};
+pub use solid::Principled;
+pub use solid_material::PrincipledMaterial;
 pub use thin::{PrincipledThin, PrincipledThinMaterial};
 
 use std::f32::consts::{FRAC_1_PI, PI};

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use glam::Vec3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::{CASES, direction, material, numbers, seen_in_rgb};
+use super::{direction, materials, numbers, seen_in_rgb};
 use crate::scene::bsdfs::{Bsdf, Side};
 use crate::spectrum::Spectrum;
 
@@ -17,15 +17,14 @@ const DRAWS: usize = 100_000;
 
 #[test]
 fn sampled_directions_follow_the_density() {
-    for case in &CASES {
-        let material = material(case.xml);
+    for (case, material) in materials() {
         for side in [Side::Front, Side::Back] {
             for outgoing in [
                 direction(0.95, 0.3),
                 direction(0.55, 2.0),
                 direction(0.2, 4.0),
             ] {
-                if let Some(bsdf) = seen_in_rgb(&material, side, outgoing) {
+                if let Some(bsdf) = seen_in_rgb(material, side, outgoing) {
                     let p = p_value(&bsdf, outgoing);
                     // About a hundred tests: one of them falls below this in a thousand runs.
                     assert!(p > 1e-5, "{} {side:?} {outgoing}: p = {p}", case.name);

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use proptest::prelude::*;
 
-use super::{CASES, direction, material, numbers, seen_in_rgb};
+use super::{direction, material, materials, numbers, seen_in_rgb};
 use crate::scene::bsdfs::{Bsdf, Side};
 use crate::spectrum::{Spectrum, SpectrumArithmetic};
 
@@ -51,12 +51,11 @@ fn limits(name: &str) -> (f32, f32) {
 /// Models lose what they absorb, and say how much.
 #[test]
 fn models_scatter_about_their_albedo() {
-    for case in &CASES {
-        let material = material(case.xml);
+    for (case, material) in materials() {
         for side in [Side::Front, Side::Back] {
             for cos in [0.95, 0.5, 0.1] {
                 let outgoing = direction(cos, 1.0);
-                let Some(bsdf) = seen_in_rgb(&material, side, outgoing) else {
+                let Some(bsdf) = seen_in_rgb(material, side, outgoing) else {
                     continue;
                 };
                 let found = furnace(&bsdf, outgoing, 40_000);
@@ -128,15 +127,14 @@ proptest! {
     /// Helmholtz reciprocity; through an interface, that of Veach 1997, equation 5.14: f / eta^2 is symmetric.
     #[test]
     fn light_may_go_both_ways(a in any_direction(), b in any_direction(), behind: bool) {
-        for case in &CASES {
+        for (case, material) in materials() {
             // Tilted frames are not reciprocal.
             if case.name.contains("map") {
                 continue;
             }
-            let material = material(case.xml);
             let (there, back) = if behind { (Side::Front, Side::Back) } else { (Side::Front, Side::Front) };
             let down = |v: Vec3| if behind { Vec3::new(v.x, v.y, -v.z) } else { v };
-            let (Some(one), Some(other)) = (seen_in_rgb(&material, there, a), seen_in_rgb(&material, back, b)) else {
+            let (Some(one), Some(other)) = (seen_in_rgb(material, there, a), seen_in_rgb(material, back, b)) else {
                 continue;
             };
             // Two surfaces back to back, and a sheet whose facets must turn their backs to where light comes from.
@@ -155,9 +153,9 @@ proptest! {
     /// What a sample says of itself is what evaluation says of it; nothing is negative or not a number.
     #[test]
     fn samples_agree_with_evaluation(outgoing in any_direction(), u in prop::array::uniform3(0.0f32..1.0), back: bool) {
-        for case in &CASES {
+        for (case, material) in materials() {
             let side = if back { Side::Back } else { Side::Front };
-            let Some(bsdf) = seen_in_rgb(&material(case.xml), side, outgoing) else { continue };
+            let Some(bsdf) = seen_in_rgb(material, side, outgoing) else { continue };
             let sample = bsdf.sample(outgoing, u);
             prop_assert!(sample.weight.is_finite(), "{}", case.name);
             if sample.weight.is_black() {

@@ -4,6 +4,8 @@ mod chi_square;
 mod conservation;
 mod mitsuba;
 
+use std::sync::LazyLock;
+
 use glam::Vec3;
 
 use super::{Bsdf, Material, SeenPoint, Side, load};
@@ -20,7 +22,7 @@ struct Case {
 }
 
 /// Every model, with parameters that let its every part be seen.
-const CASES: [Case; 32] = [
+static CASES: [Case; 32] = [
     Case {
         name: "diffuse",
         xml: r#"<bsdf type="diffuse"><rgb name="reflectance" value="0.2, 0.5, 0.9"/></bsdf>"#,
@@ -176,6 +178,17 @@ const CASES: [Case; 32] = [
             <bsdf type="roughconductor"><float name="alpha" value="0.3"/></bsdf></bsdf>"#,
     },
 ];
+
+/// Every case with its material, loaded once.
+fn materials() -> &'static [(&'static Case, Material)] {
+    static MATERIALS: LazyLock<Vec<(&Case, Material)>> = LazyLock::new(|| {
+        CASES
+            .iter()
+            .map(|case| (case, material(case.xml)))
+            .collect()
+    });
+    &MATERIALS
+}
 
 /// The bsdf that `xml` states, in which `{heights}` stands for the file of a height map.
 fn material(xml: &str) -> Material {
