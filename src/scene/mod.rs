@@ -25,7 +25,7 @@ pub use bsdfs::{
 pub(crate) use bsdfs::{BsdfSamples, BsdfValues};
 pub use emitters::{
     AreaLight, ConstantLight, DirectionalLight, Emitter, EnvironmentMap, LightSample, PointLight,
-    SpotLight,
+    Projector, SpotLight,
 };
 pub use error::{Location, SceneError};
 pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};
