@@ -139,8 +139,8 @@ fn settings_that_do_not_fit_the_scene() {
     let point = with(SCENE, r#"type="constant""#, r#"type="point""#);
     assert_eq!(
         Folder::new().refusal(&point, ["--direct", "off"]),
-        "cohort: the scene has a point light, which paths cannot hit: it needs next-event estimation \
-         (`--direct next-event`)"
+        "cohort: the scene has a light without extent (`point`, `spot` or `directional`), which paths cannot hit: \
+         it needs next-event estimation (`--direct next-event`)"
     );
 }
 

@@ -69,9 +69,11 @@ impl Case {
     fn inputs(&self) -> Vec<PathBuf> {
         let names = [
             "fragments/floor.xml",
+            "fragments/row.xml",
             "octahedron.obj",
             "tent.obj",
             "coloured.ply",
+            "sky.pfm",
             "colours.png",
             "heights.png",
             "normals.png",
@@ -146,6 +148,26 @@ cases! {
     no_depth_at_all: "many-emitters" ["depth" = "0"];
     hidden_emitters: "many-emitters" ["hide" = "true"];
     hidden_emitters_of_all_shapes: "flat-lights" ["hide" = "true"];
+
+    directional_and_spot_lights: "distant-lights";
+    directional_and_spot_lights_in_wavelengths: "distant-lights" in_wavelengths;
+    sky: "sky";
+    sky_in_wavelengths: "sky" in_wavelengths;
+    sky_sampled_where_it_is_bright: "sky" ["compensate" = "true"];
+    hidden_sky: "sky" ["hide" = "true"];
+
+    lens: "lens";
+    wide_lens_in_focus_nearby: "lens" ["radius" = "0.5", "focus" = "2.8"];
+    lens_with_clipping_planes: "lens" ["near" = "4.5", "far" = "7", "hide" = "true"];
+    orthographic: "parallel";
+    tall_orthographic: "parallel" ["width" = "32", "height" = "52"];
+    orthographic_with_clipping_planes: "parallel" ["near" = "4.5", "far" = "7", "hide" = "true"];
+
+    direct: "direct";
+    direct_hidden: "direct" ["hide" = "true"];
+    direct_by_emitters: "direct" ["bsdf_samples" = "0"];
+    direct_by_bsdfs: "direct" ["emitter_samples" = "0"];
+    direct_by_many_samples: "direct" ["emitter_samples" = "3", "bsdf_samples" = "5"];
 
     two_sides: "sides";
     two_sides_flipped: "sides" ["flip" = "true"];

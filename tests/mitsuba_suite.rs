@@ -115,6 +115,46 @@ fn cornell_boxes() {
     }
 }
 
+/// A photographed sky and serialized meshes, with surfaces that are diffuse.
+#[test]
+fn material_preview() {
+    let Some(suite) = suite("the material preview of Mitsuba's suite") else {
+        return;
+    };
+    let path = files::of_project("tests/scenes/preview.xml");
+    let folder = suite.join("scenes/matpreview");
+    let inputs = [
+        folder.join("envmap.exr"),
+        folder.join("matpreview.serialized"),
+    ];
+    let definitions = [("suite".to_owned(), suite.display().to_string())];
+    for (colour, name) in COLOURS {
+        let Some(mitsuba) = Mitsuba::find("the material preview") else {
+            return;
+        };
+        let Some(scene) = load(&path, &definitions) else {
+            return;
+        };
+        let reference = Reference {
+            scene: &path,
+            inputs: &inputs,
+            definitions: &definitions,
+            colour,
+            max_depth: None,
+            seeds: 24,
+            spp: 32,
+        };
+        let reference = mitsuba.render(&reference, scene.film.crop.size);
+        let settings = Settings {
+            colour,
+            ..Settings::default()
+        };
+        let ours = replicates(&scene, settings, 0..24, 20);
+        let what = format!("material preview, {name}");
+        Comparison::new(what, &ours, &reference, 4).assert();
+    }
+}
+
 /// Every scene whose plugins we have, against the image that comes with it.
 #[test]
 fn scenes_with_their_own_references() {

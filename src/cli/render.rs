@@ -18,7 +18,7 @@ use cohort::transport::DirectLight;
 use super::interrupt::stop_on_interrupt;
 use super::output::OutputFiles;
 use super::parse::{parse_count, parse_rays, parse_seed, parse_threads, parse_time};
-use super::report::{Bar, summarise, warn_of_darkness};
+use super::report::{Bar, summarise, tell_what_is_missing, warn_of_darkness};
 use super::scene_args::SceneArgs;
 use super::strategy_args::StrategyArgs;
 
@@ -132,6 +132,7 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
     arguments.strategy.build(default_depth)?;
     let scene = arguments.scene.load(arguments.threads())?;
     warn_of_darkness(&scene);
+    tell_what_is_missing(&scene);
     let settings = arguments.settings(&scene)?;
     let render = Render::new(Arc::new(scene), settings)?;
     let stop =

@@ -54,7 +54,7 @@ pub enum RenderError {
     EndlessPaths,
     /// Lights that can only be found by next-event estimation, which is off.
     #[error(
-        "the scene has a point light, which paths cannot hit: it needs next-event estimation (`--direct next-event`)"
+        "the scene has a light without extent (`point`, `spot` or `directional`), which paths cannot hit: it needs next-event estimation (`--direct next-event`)"
     )]
     UnreachableLight,
 }
@@ -102,7 +102,12 @@ impl Render {
         let build_time = start.elapsed();
         let transport = TransportSettings {
             max_depth,
-            direct_light: settings.direct_light,
+            direct_light: if scene.integrator.samples.emitters == 0 {
+                DirectLight::Off
+            } else {
+                settings.direct_light
+            },
+            samples: scene.integrator.samples,
             sampler: settings.sampler,
             hide_emitters: scene.integrator.hide_emitters,
         };

@@ -25,6 +25,12 @@ impl SolidAnglePdf {
     pub fn chosen_with(self, probability: f32) -> Self {
         Self(self.0 * probability)
     }
+
+    /// The density of a strategy that takes `samples` samples where others take one: what its share is weighed by.
+    #[inline]
+    pub fn taken_times(self, samples: u32) -> Self {
+        Self(self.0 * samples as f32)
+    }
 }
 
 /// The weight of a sample drawn with density `own`, where another strategy could have drawn it with density

@@ -64,6 +64,8 @@ impl FromStr for SamplerKind {
 pub enum Use {
     /// Where on the film, and which wavelengths.
     Camera,
+    /// Where on the lens.
+    Lens,
     /// Which light, and which point of it, from the vertex after this many reflections.
     Light(u32),
     /// The direction in which it leaves that vertex.
@@ -76,6 +78,8 @@ impl Use {
     fn dimensions(self) -> u32 {
         match self {
             Self::Camera => 0,
+            // Beyond all depths: a scramble of its own.
+            Self::Lens => 1 << 31,
             Self::Light(depth) => 2 * depth + 1,
             Self::Direction(depth) => 2 * depth + 2,
         }
@@ -183,6 +187,7 @@ mod tests {
         let mut all: Vec<f32> = Vec::new();
         for what in [
             Use::Camera,
+            Use::Lens,
             Use::Light(0),
             Use::Direction(0),
             Use::Light(1),

@@ -7,10 +7,11 @@ use std::sync::Arc;
 use super::bsdfs::{self, Material};
 use super::emitters::{self, Emitter};
 use super::error::SceneError;
+use super::integrators::{self, PathIntegrator};
 use super::shapes::{self, Geometry, Shape};
 use super::textures::TextureLoader;
 use super::xml::{self, Class, Document, Object, SceneSource};
-use super::{EmitterId, IndependentSampler, MaterialId, PathIntegrator, Scene, ShapeId, sensors};
+use super::{EmitterId, IndependentSampler, MaterialId, Scene, ShapeId, sensors};
 
 /// What can be told about loading a scene.
 #[derive(Clone, Debug, Default)]
@@ -97,7 +98,7 @@ impl<'d> Loader<'d> {
     fn scene(mut self, name: String) -> Result<Scene, SceneError> {
         let root = &self.document.root;
         let integrator = match root.child(Class::Integrator)? {
-            Some(child) => PathIntegrator::load(&child.object)?,
+            Some(child) => integrators::load(&child.object)?,
             None => PathIntegrator::default(),
         };
         let Some(sensor) = root.child(Class::Sensor)? else {
@@ -119,7 +120,7 @@ impl<'d> Loader<'d> {
         for child in root.children(Class::Emitter) {
             // An area light outside of a shape is there to be referred to from shapes.
             if child.object.plugin != "area" {
-                let emitter = emitters::load(&child.object)?;
+                let emitter = emitters::load(&child.object, &self)?;
                 self.add_surrounding(&child.object, emitter)?;
             }
         }
@@ -137,8 +138,7 @@ impl<'d> Loader<'d> {
     }
 
     fn add_surrounding(&mut self, object: &Object, emitter: Emitter) -> Result<(), SceneError> {
-        let surrounds = |emitter: &Emitter| matches!(emitter, Emitter::Constant(_));
-        if surrounds(&emitter) && self.emitters.iter().any(surrounds) {
+        if emitter.surrounds() && self.emitters.iter().any(Emitter::surrounds) {
             return Err(
                 object.error("the scene already has an emitter that surrounds it; it can have one")
             );
@@ -237,41 +237,6 @@ fn keep_attributes(
         }
     }
     Ok(())
-}
-
-impl PathIntegrator {
-    fn load(object: &Object) -> Result<Self, SceneError> {
-        if object.plugin != "path" {
-            return Err(object.unsupported(&["path"]));
-        }
-        let default = Self::default();
-        let max_depth = match object.integer_or("max_depth", -1)? {
-            -1 => None,
-            depth => Some(u32::try_from(depth).map_err(|_| {
-                object.parameter_error(
-                    "max_depth",
-                    format!("`max_depth` is {depth}; it must be -1 (no limit) or from 0 on"),
-                )
-            })?),
-        };
-        let rr_depth = object.integer_or("rr_depth", i64::from(default.roulette_depth))?;
-        let roulette_depth = u32::try_from(rr_depth)
-            .ok()
-            .filter(|&depth| depth > 0)
-            .ok_or_else(|| {
-                object.parameter_error(
-                    "rr_depth",
-                    format!("`rr_depth` is {rr_depth}; it must be from 1 on"),
-                )
-            })?;
-        let hide_emitters = object.boolean_or("hide_emitters", default.hide_emitters)?;
-        object.finish()?;
-        Ok(Self {
-            max_depth,
-            roulette_depth,
-            hide_emitters,
-        })
-    }
 }
 
 impl IndependentSampler {

@@ -3,6 +3,9 @@
 mod bsdfs;
 mod emitters;
 mod error;
+mod image_file;
+mod integrators;
+mod light_choice;
 mod load;
 pub mod mesh;
 mod sensors;
@@ -19,12 +22,19 @@ pub use bsdfs::{
     RoughDielectric, RoughDielectricMaterial, RoughPlastic, RoughPlasticMaterial, Roughness,
     SeenPoint, Side, ThinDielectric,
 };
-pub use emitters::{AreaLight, ConstantLight, Emitter, LightSample, PointLight};
+pub use emitters::{
+    AreaLight, ConstantLight, DirectionalLight, Emitter, EnvironmentMap, LightSample, PointLight,
+    SpotLight,
+};
 pub use error::{Location, SceneError};
+pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};
+pub use integrators::{PathIntegrator, SurfaceSamples};
+pub use light_choice::{ChosenLight, Cone, LightBounds, LightChoice};
 pub use load::LoadOptions;
 pub use sensors::{
-    CameraError, CameraRay, CropWindow, FieldOfView, FilmDescription, FilmError, FovAxis,
-    ImageSize, Perspective, PixelFormat, Projection, ReconstructionFilter,
+    Camera, CameraError, CameraRay, CameraView, CropWindow, FieldOfView, FilmDescription,
+    FilmError, FovAxis, ImageSize, Orthographic, OrthographicView, Perspective, PinholeView,
+    PixelFormat, ReconstructionFilter, ThinLens, ThinLensView,
 };
 pub use shapes::{
     AttributesAt, Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape,
@@ -72,34 +82,13 @@ pub struct Scene {
     /// All emitters.
     pub emitters: Vec<Emitter>,
     /// The camera.
-    pub camera: Perspective,
+    pub camera: Camera,
     /// The film.
     pub film: FilmDescription,
     /// How deep paths go and which are shown.
     pub integrator: PathIntegrator,
     /// How many samples are taken.
     pub sampler: IndependentSampler,
-}
-
-/// `path`: what the scene file says of the paths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PathIntegrator {
-    /// Most segments of a path, camera ray included; `None` for no limit. 1 shows emitters only, 2 adds direct light.
-    pub max_depth: Option<u32>,
-    /// From which number of segments on `throughput-roulette` may end a path.
-    pub roulette_depth: u32,
-    /// Whether area lights and surroundings are invisible to the camera.
-    pub hide_emitters: bool,
-}
-
-impl Default for PathIntegrator {
-    fn default() -> Self {
-        Self {
-            max_depth: None,
-            roulette_depth: 5,
-            hide_emitters: false,
-        }
-    }
 }
 
 /// `independent`: what the scene file says of the samples.

@@ -2,6 +2,7 @@
 
 use super::cie::matching_srgb;
 use super::curve::SpectralCurve;
+use super::emission_image::{BetweenTexels, EmissionImage};
 use super::reflectances::Reflectances;
 use super::values::{Spectrum, SpectrumArithmetic};
 use super::wavelengths::Wavelengths;
@@ -23,6 +24,13 @@ pub trait Colour: Copy + Debug + Default + Send + Sync + 'static {
 
     /// The values of a colour of the scene for a path with `wavelengths`.
     fn evaluate(curve: &SpectralCurve, wavelengths: &Self::Wavelengths) -> Self::Spectrum;
+
+    /// The values of a point of an image of emitted colours for a path with `wavelengths`.
+    fn evaluate_emission(
+        image: &EmissionImage,
+        at: &BetweenTexels,
+        wavelengths: &Self::Wavelengths,
+    ) -> Self::Spectrum;
 
     /// The values of one of many reflectances for a path with `wavelengths`.
     fn evaluate_entry(
@@ -54,6 +62,15 @@ impl Colour for Rgb {
     }
 
     #[inline]
+    fn evaluate_emission(
+        image: &EmissionImage,
+        at: &BetweenTexels,
+        _wavelengths: &(),
+    ) -> Spectrum<3> {
+        Spectrum(image.rgb(at))
+    }
+
+    #[inline]
     fn evaluate_entry(table: &Reflectances, entry: usize, _wavelengths: &()) -> Spectrum<3> {
         Spectrum(table.rgb(entry))
     }
@@ -81,6 +98,15 @@ impl<const N: usize> Colour for Spectral<N> {
     #[inline(always)]
     fn evaluate(curve: &SpectralCurve, wavelengths: &Wavelengths<N>) -> Spectrum<N> {
         curve.evaluate(wavelengths)
+    }
+
+    #[inline]
+    fn evaluate_emission(
+        image: &EmissionImage,
+        at: &BetweenTexels,
+        wavelengths: &Wavelengths<N>,
+    ) -> Spectrum<N> {
+        image.spectrum(at, wavelengths)
     }
 
     #[inline]

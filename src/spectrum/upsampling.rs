@@ -6,7 +6,7 @@
 //! when it is loaded, by damped Gauss-Newton steps along the straight way from a grey to the colour.
 
 use super::cie::{STEP, WAVELENGTH_MAX, WAVELENGTH_MIN, illuminant_d65, matching_srgb};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 use std::sync::LazyLock;
 
 /// A smooth reflectance: the sigmoid of a quadratic polynomial.
@@ -29,6 +29,26 @@ impl SigmoidPolynomial {
         let target = DVec3::from_array(rgb.map(f64::from));
         let coefficients = fit(target).as_vec3().to_array();
         Self { coefficients }
+    }
+
+    /// The reflectance whose colour under D65 is `rgb`, sought from this one, whose colour is near.
+    pub(super) fn refit(self, rgb: [f32; 3]) -> Self {
+        const ITERATIONS: u32 = 20;
+        let start = DVec3::from_array(self.coefficients.map(f64::from));
+        let target = DVec3::from_array(rgb.map(f64::from));
+        let coefficients = levenberg_marquardt(&QUADRATURE, start, target, ITERATIONS);
+        Self {
+            coefficients: coefficients.as_vec3().to_array(),
+        }
+    }
+
+    /// The polynomial between four at the corners of a square: upper left, upper right, lower left, lower right.
+    pub(super) fn mix(corners: [Self; 4], across: f32, down: f32) -> Self {
+        let [c00, c10, c01, c11] = corners.map(|corner| Vec3::from(corner.coefficients));
+        let coefficients = c00.lerp(c10, across).lerp(c01.lerp(c11, across), down);
+        Self {
+            coefficients: coefficients.to_array(),
+        }
     }
 
     /// As [`Self::fit`], an order of magnitude faster and to about 3e-4 of the colour's greatest component: for the many colours of

@@ -31,10 +31,21 @@ pub(super) struct Segments<C: Colour> {
     pub is_single: Vec<bool>,
     /// The density with which its direction was drawn; infinite for camera rays, which no other technique can draw.
     pub direction_pdf: Vec<SolidAnglePdf>,
+    /// The surface that each left, where next-event estimation chose its light by it; else empty.
+    pub origins: Vec<Receiver>,
     /// The rays themselves, in world space.
     pub rays: Rays,
     /// What they hit.
     pub hits: Hits,
+}
+
+/// A surface to which next-event estimation looks for light.
+#[derive(Clone, Copy)]
+pub(super) struct Receiver {
+    /// Position in world space.
+    pub position: Vec3,
+    /// Unit shading normal in world space, on either side.
+    pub normal: Vec3,
 }
 
 /// Surface points that scatter light.
@@ -103,6 +114,7 @@ impl<C: Colour> Segments<C> {
             point: Vec::new(),
             is_single: Vec::new(),
             direction_pdf: Vec::new(),
+            origins: Vec::new(),
             rays: Rays::default(),
             hits: Hits::default(),
         }
@@ -119,7 +131,13 @@ impl<C: Colour> Segments<C> {
         make_room(&mut self.point, count);
         make_room(&mut self.is_single, count);
         make_room(&mut self.direction_pdf, count);
+        self.origins.clear();
         self.rays.resize(count);
+    }
+
+    /// Makes room for the surfaces that `count` rays leave.
+    pub fn remember_origins(&mut self, count: usize) {
+        make_room(&mut self.origins, count);
     }
 
     /// Where a ray met its shape, if it met one.
@@ -169,6 +187,15 @@ impl<C: Colour> Vertices<C> {
 
     pub fn len(&self) -> usize {
         self.path.len()
+    }
+
+    /// A vertex as next-event estimation sees it.
+    #[inline(always)]
+    pub fn receiver(&self, i: usize) -> Receiver {
+        Receiver {
+            position: self.position[i],
+            normal: self.frame[i].normal,
+        }
     }
 
     /// Empties the vertices and makes room for `count`.

@@ -22,6 +22,7 @@ pub(super) fn start<C: Colour>(
     paths: &mut CameraPaths<C>,
     segments: &mut Segments<C>,
 ) {
+    let has_lens = engine.camera.has_lens();
     let crop = engine.scene.film.crop;
     let corner = Vec2::new(crop.x as f32, crop.y as f32);
     let count = tile.pixels.count() * job.samples as usize;
@@ -43,7 +44,12 @@ pub(super) fn start<C: Colour>(
             paths.wavelengths.push(C::sample_wavelengths(wavelength_u));
             paths.radiance.push(C::Spectrum::ZERO);
             paths.filter_weight.push(sample.weight);
-            let ray = engine.projection.ray(centre + sample.offset);
+            let lens = if has_lens {
+                sampler.numbers(point, Use::Lens)
+            } else {
+                [0.5; 2]
+            };
+            let ray = engine.camera.ray(centre + sample.offset, lens);
             segments.push(
                 index as u32,
                 C::Spectrum::ONE,

@@ -3,12 +3,12 @@
 use glam::Vec3;
 use multiversion::multiversion;
 
-use super::batch::{CameraPaths, Segments, Vertices};
+use super::batch::{CameraPaths, Receiver, Segments, Vertices};
 use super::engine::Engine;
 use super::settings::DirectLight;
 use super::surface::{CHUNK, SurfaceChunk};
 use crate::sampling::{Frame, Sampler, SolidAnglePdf, power_heuristic};
-use crate::scene::{Emitter, SeenPoint, Side, SurfaceParameters};
+use crate::scene::{Emitter, EmitterId, SeenPoint, Side, SurfaceParameters};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
@@ -41,22 +41,24 @@ pub(super) fn arrive<C: Colour>(
             let direction = Vec3::from(segments.rays.direction(i));
             let hit = segments.hits.geometry_id(i);
             let Some(shape) = engine.accelerator.shape(&engine.scene, hit) else {
-                if let Some(light) = engine.surroundings().filter(|_| !hidden) {
-                    let weight = engine.mis_weight(segments.direction_pdf[i], light.pdf());
-                    let radiance = light.radiance::<C>(wavelengths) * weight;
+                if let Some(emitter) = engine.surroundings.filter(|_| !hidden) {
+                    let light = &engine.scene.emitters[emitter];
+                    let light_pdf = light.surrounding_pdf(direction);
+                    let weight = engine.mis_weight(segments, i, emitter, light_pdf);
+                    let radiance = light.surrounding_radiance::<C>(direction, wavelengths) * weight;
                     paths.radiance[path as usize] += segments.throughput[i] * radiance;
                 }
                 continue;
             };
             let point = surfaces.point(i - start);
-            if let Some(Emitter::Area(light)) =
-                shape.emitter.map(|id| &engine.scene.emitters[id.index()])
+            if let Some(emitter) = shape.emitter.map(EmitterId::index)
+                && let Emitter::Area(light) = &engine.scene.emitters[emitter]
             {
                 let radiance = light.radiance::<C>(&point, -direction, wavelengths);
                 if !radiance.is_black() {
                     let origin = Vec3::from(segments.rays.origin(i));
                     let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
-                    let weight = engine.mis_weight(segments.direction_pdf[i], light_pdf);
+                    let weight = engine.mis_weight(segments, i, emitter, light_pdf);
                     paths.radiance[path as usize] += segments.throughput[i] * (radiance * weight);
                 }
             }
@@ -109,15 +111,32 @@ pub(super) fn arrive<C: Colour>(
 }
 
 impl Engine {
-    /// The weight of light found by following a direction drawn with `direction_pdf`, where next-event estimation
-    /// draws the same direction with `light_pdf` once it has chosen that light.
+    /// The weight of light that segment `i` found at `emitter`, where next-event estimation draws the same direction with
+    /// `light_pdf` once it has chosen that emitter.
     #[inline]
-    fn mis_weight(&self, direction_pdf: SolidAnglePdf, light_pdf: SolidAnglePdf) -> f32 {
-        match self.settings.direct_light {
-            DirectLight::NextEvent => {
-                power_heuristic(direction_pdf, light_pdf.chosen_with(self.light_choice))
-            }
-            DirectLight::Off => 1.0,
+    fn mis_weight<C: Colour>(
+        &self,
+        segments: &Segments<C>,
+        i: usize,
+        emitter: usize,
+        light_pdf: SolidAnglePdf,
+    ) -> f32 {
+        let direction_pdf = segments.direction_pdf[i];
+        if self.settings.direct_light == DirectLight::Off || direction_pdf.0 == f32::INFINITY {
+            return 1.0;
         }
+        let chosen_with = match segments.origins.get(i) {
+            Some(&Receiver { position, normal }) => {
+                self.light_choice.probability(position, normal, emitter)
+            }
+            None => 1.0,
+        };
+        let samples = &self.settings.samples;
+        power_heuristic(
+            direction_pdf.taken_times(samples.directions),
+            light_pdf
+                .chosen_with(chosen_with)
+                .taken_times(samples.emitters),
+        )
     }
 }

@@ -12,7 +12,7 @@ use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_
 use crate::embree::{Coherence, Version};
 use crate::film::{Accumulator, FilmTile, FilterSampler, PixelStatistics, TilePixels};
 use crate::sampling::{Sampler, SamplerKind, StreamKey};
-use crate::scene::{ConstantLight, Emitter, Projection, Scene};
+use crate::scene::{CameraView, Emitter, LightChoice, Scene};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::{Offspring, Scope, Strategy};
 
@@ -25,12 +25,12 @@ pub struct Engine {
     pub(super) accelerator: Accelerator,
     pub(super) settings: TransportSettings,
     pub(super) strategy: Box<dyn Strategy>,
-    pub(super) projection: Projection,
+    pub(super) camera: CameraView,
     pub(super) filter: FilterSampler,
-    /// The probability with which next-event estimation chooses each emitter.
-    pub(super) light_choice: f32,
+    /// How next-event estimation chooses among the emitters.
+    pub(super) light_choice: LightChoice,
     /// Which emitter surrounds the scene; looked up once, for rays that leave the scene ask for it.
-    surroundings: Option<usize>,
+    pub(super) surroundings: Option<usize>,
 }
 
 /// One batch: some samples of every pixel of a tile.
@@ -53,13 +53,10 @@ impl Engine {
         strategy: Box<dyn Strategy>,
     ) -> Self {
         Self {
-            projection: scene.camera.project(scene.film.size),
+            camera: scene.camera.view(scene.film.size),
             filter: FilterSampler::new(&scene.film),
-            surroundings: scene
-                .emitters
-                .iter()
-                .position(|emitter| matches!(emitter, Emitter::Constant(_))),
-            light_choice: 1.0 / scene.emitters.len().max(1) as f32,
+            surroundings: scene.emitters.iter().position(Emitter::surrounds),
+            light_choice: LightChoice::new(&scene.emitters, &scene.shapes),
             scene,
             accelerator,
             settings,
@@ -80,15 +77,6 @@ impl Engine {
     /// The version of the intersection layer's library.
     pub fn embree_version(&self) -> Version {
         self.accelerator.scene().device().version()
-    }
-
-    /// The light that surrounds the scene, if there is one.
-    #[inline]
-    pub(super) fn surroundings(&self) -> Option<&ConstantLight> {
-        match &self.scene.emitters[self.surroundings?] {
-            Emitter::Constant(light) => Some(light),
-            Emitter::Area(_) | Emitter::Point(_) => None,
-        }
     }
 }
 
@@ -221,7 +209,12 @@ impl<C: Colour> Tracer<C> {
                 sampler,
                 &mut self.offspring,
             );
+            if engine.settings.samples.directions != 1 {
+                self.offspring
+                    .split_each(engine.settings.samples.directions);
+            }
             scatter::scatter(
+                engine,
                 &self.vertices,
                 self.offspring.children(),
                 depth,

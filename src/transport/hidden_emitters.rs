@@ -28,7 +28,7 @@ pub(super) fn look_through<C: Colour>(
             continue;
         }
         let (origin, direction) = (segments.rays.origin(i), segments.rays.direction(i));
-        let far = engine.projection.far_along(direction.into());
+        let far = engine.camera.far_along(direction.into());
         let mut nearest = segments.rays.tfar(i);
         let through = loop {
             let mut ray = RayHit1::new(Ray1::new(origin, direction, nearest.next_up(), far));

@@ -3,6 +3,7 @@
 use multiversion::multiversion;
 
 use super::batch::{Segments, Vertices};
+use super::engine::Engine;
 use super::offset::leave_surface;
 use crate::sampling::{Sampler, Use};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -15,6 +16,7 @@ use crate::walk::Child;
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
 pub(super) fn scatter<C: Colour>(
+    engine: &Engine,
     vertices: &Vertices<C>,
     children: &[Child],
     depth: u32,
@@ -22,6 +24,10 @@ pub(super) fn scatter<C: Colour>(
     segments: &mut Segments<C>,
 ) {
     segments.restart(children.len());
+    let light_is_chosen = engine.light_choice.depends_on_surface();
+    if light_is_chosen {
+        segments.remember_origins(children.len());
+    }
     let mut elder_siblings = 0;
     for (i, child) in children.iter().enumerate() {
         let parent = child.parent as usize;
@@ -56,6 +62,9 @@ pub(super) fn scatter<C: Colour>(
             is_single,
             sample.pdf,
         );
+        if light_is_chosen {
+            segments.origins.push(vertices.receiver(parent));
+        }
     }
     let count = segments.len();
     segments.rays.resize(count);

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::sampling::SamplerKind;
+use crate::scene::SurfaceSamples;
 
 /// Whether direct light is also sought by sampling the emitters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -22,6 +23,8 @@ pub struct TransportSettings {
     pub max_depth: Option<u32>,
     /// How direct light is found.
     pub direct_light: DirectLight,
+    /// How many samples are taken at every vertex.
+    pub samples: SurfaceSamples,
     /// Where the random numbers of paths come from.
     pub sampler: SamplerKind,
     /// Whether emitters are invisible to the camera.

@@ -36,6 +36,25 @@ impl Offspring {
         &self.children
     }
 
+    /// Puts `count` siblings in the place of every child, which share its weight.
+    pub fn split_each(&mut self, count: u32) {
+        let decided = self.children.len();
+        let share = 1.0 / count as f32;
+        let nobody = Child {
+            parent: 0,
+            weight: 0.0,
+        };
+        self.children.resize(decided * count as usize, nobody);
+        // From the last on: the places of those before are not needed any more.
+        for index in (0..self.children.len()).rev() {
+            let child = self.children[index / count as usize];
+            self.children[index] = Child {
+                weight: child.weight * share,
+                ..child
+            };
+        }
+    }
+
     /// nu of each particle of the population last resampled: the mean of its number of children.
     pub fn expected_counts(&self) -> &[ExpectedCount] {
         &self.expected
@@ -85,5 +104,29 @@ impl Offspring {
         let children: ExpectedCount = self.expected.iter().copied().sum();
         make_room(&mut self.children, children.whole() as usize + 1);
         rounding.draw(&self.expected, population, random, &mut self.children);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn child(parent: u32, weight: f32) -> Child {
+        Child { parent, weight }
+    }
+
+    #[test]
+    fn siblings_share_the_weight() {
+        let mut offspring = Offspring {
+            children: vec![child(0, 2.0), child(3, 8.0)],
+            ..Offspring::default()
+        };
+        offspring.split_each(1);
+        assert_eq!(offspring.children(), [child(0, 2.0), child(3, 8.0)]);
+        offspring.split_each(2);
+        let expected = [child(0, 1.0), child(0, 1.0), child(3, 4.0), child(3, 4.0)];
+        assert_eq!(offspring.children(), expected);
+        offspring.split_each(0);
+        assert!(offspring.children().is_empty());
     }
 }

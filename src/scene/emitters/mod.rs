@@ -2,26 +2,38 @@
 
 mod area;
 mod constant;
+mod directional;
+mod environment;
 mod point;
+mod spot;
+#[cfg(test)]
+mod tests;
 
 pub use area::AreaLight;
 pub use constant::ConstantLight;
+pub use directional::DirectionalLight;
+pub use environment::EnvironmentMap;
 pub use point::PointLight;
+pub use spot::SpotLight;
 
 use glam::Vec3;
 
 use super::error::SceneError;
+use super::load::Loader;
 use super::shapes::SurfacePoint;
 use super::xml::Object;
 use super::{Shape, ShapeId};
 use crate::sampling::SolidAnglePdf;
-use crate::spectrum::Colour;
+use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// An emitter of a scene file that stands on its own.
-pub(super) fn load(object: &Object) -> Result<Emitter, SceneError> {
+pub(super) fn load(object: &Object, loader: &Loader) -> Result<Emitter, SceneError> {
     match object.plugin.as_str() {
         "point" => PointLight::load(object).map(Emitter::Point),
+        "spot" => SpotLight::load(object).map(Emitter::Spot),
+        "directional" => DirectionalLight::load(object).map(Emitter::Directional),
         "constant" => ConstantLight::load(object).map(Emitter::Constant),
+        "envmap" => EnvironmentMap::load(object, loader).map(Emitter::Environment),
         _ => Err(object.unsupported(&SUPPORTED)),
     }
 }
@@ -37,7 +49,7 @@ pub(super) fn load_area(object: &Object, shape: ShapeId) -> Result<AreaLight, Sc
     }
 }
 
-const SUPPORTED: [&str; 3] = ["area", "point", "constant"];
+const SUPPORTED: [&str; 6] = ["area", "point", "spot", "directional", "constant", "envmap"];
 
 /// A source of light.
 #[derive(Clone, Debug)]
@@ -46,8 +58,14 @@ pub enum Emitter {
     Area(AreaLight),
     /// `point`: an isotropic point.
     Point(PointLight),
+    /// `spot`: a point with a cone of light.
+    Spot(SpotLight),
+    /// `directional`: infinitely far away, in one direction.
+    Directional(DirectionalLight),
     /// `constant`: the same radiance from every direction.
     Constant(ConstantLight),
+    /// `envmap`: an image all around.
+    Environment(EnvironmentMap),
 }
 
 /// Light drawn as seen from a reference point.
@@ -55,13 +73,13 @@ pub enum Emitter {
 pub struct LightSample<S> {
     /// Unit direction from the reference point to the light, in world space.
     pub direction: Vec3,
-    /// Distance to the light in scene units; infinite for the surroundings.
+    /// Distance to the light in scene units; infinite for surroundings and directional lights.
     pub distance: f32,
     /// The point of the light, where it has a surface.
     pub surface: Option<SurfacePoint>,
-    /// Radiance over density; for a point light, intensity over squared distance.
+    /// Radiance over density; where there is no density, irradiance on a surface that faces the light.
     pub weight: S,
-    /// The density of `direction`; `None` where only this way of sampling can find the light (a point light).
+    /// The density of `direction`; `None` where only this way of sampling can find the light (points, single directions).
     pub pdf: Option<SolidAnglePdf>,
 }
 
@@ -79,12 +97,46 @@ impl Emitter {
         match self {
             Self::Area(light) => light.sample::<C>(shapes, reference, wavelengths, u),
             Self::Point(light) => light.sample::<C>(reference, wavelengths),
+            Self::Spot(light) => light.sample::<C>(reference, wavelengths),
+            Self::Directional(light) => Some(light.sample::<C>(wavelengths)),
             Self::Constant(light) => Some(light.sample::<C>(wavelengths, u)),
+            Self::Environment(light) => light.sample::<C>(wavelengths, u),
         }
     }
 
     /// Whether only next-event estimation can find this light.
     pub fn is_delta(&self) -> bool {
-        matches!(self, Self::Point(_))
+        matches!(self, Self::Point(_) | Self::Spot(_) | Self::Directional(_))
+    }
+
+    /// Whether it is what rays see that leave the scene.
+    pub fn surrounds(&self) -> bool {
+        matches!(self, Self::Constant(_) | Self::Environment(_))
+    }
+
+    /// The radiance that arrives from `direction` (unit, world space, away from the scene) where the light
+    /// [surrounds](Self::surrounds) the scene; nothing from other lights.
+    #[inline]
+    pub fn surrounding_radiance<C: Colour>(
+        &self,
+        direction: Vec3,
+        wavelengths: &C::Wavelengths,
+    ) -> C::Spectrum {
+        match self {
+            Self::Constant(light) => light.radiance::<C>(wavelengths),
+            Self::Environment(light) => light.radiance::<C>(direction, wavelengths),
+            _ => C::Spectrum::ZERO,
+        }
+    }
+
+    /// The density with which [`Self::sample`] draws `direction` (unit, world space) where the light
+    /// [surrounds](Self::surrounds) the scene; 0 for other lights.
+    #[inline]
+    pub fn surrounding_pdf(&self, direction: Vec3) -> SolidAnglePdf {
+        match self {
+            Self::Constant(light) => light.pdf(),
+            Self::Environment(light) => light.pdf(direction),
+            _ => SolidAnglePdf(0.0),
+        }
     }
 }

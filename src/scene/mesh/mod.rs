@@ -7,6 +7,7 @@ pub mod knot;
 mod normals;
 pub mod obj;
 pub mod ply;
+pub mod serialized;
 mod write;
 
 pub use attribute::{AttributeValues, MeshAttribute};

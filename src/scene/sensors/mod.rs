@@ -1,14 +1,20 @@
 //! Sensors: cameras, and the film that they expose.
 
+mod camera;
+mod field_of_view;
 mod film;
+mod orthographic;
 mod perspective;
+mod thin_lens;
 
+pub use camera::{Camera, CameraError, CameraRay, CameraView};
+pub use field_of_view::{FieldOfView, FovAxis};
 pub use film::{
     CropWindow, FilmDescription, FilmError, ImageSize, PixelFormat, ReconstructionFilter,
 };
-pub use perspective::{CameraError, FieldOfView, FovAxis, Perspective, Projection};
-
-use glam::Vec3;
+pub use orthographic::{Orthographic, OrthographicView};
+pub use perspective::{Perspective, PinholeView};
+pub use thin_lens::{ThinLens, ThinLensView};
 
 use super::IndependentSampler;
 use super::error::SceneError;
@@ -16,17 +22,14 @@ use super::xml::{Class, Object};
 
 /// A sensor of a scene file with what stands in it.
 pub(super) struct Sensor {
-    pub camera: Perspective,
+    pub camera: Camera,
     pub film: FilmDescription,
     pub sampler: IndependentSampler,
 }
 
 /// The sensor of a scene file.
 pub(super) fn load(object: &Object) -> Result<Sensor, SceneError> {
-    if object.plugin != "perspective" {
-        return Err(object.unsupported(&["perspective"]));
-    }
-    let camera = Perspective::load(object)?;
+    let camera = Camera::load(object)?;
     let film = match object.child(Class::Film)? {
         Some(child) => FilmDescription::load(&child.object)?,
         None => FilmDescription::default(),
@@ -43,15 +46,5 @@ pub(super) fn load(object: &Object) -> Result<Sensor, SceneError> {
     })
 }
 
-/// A camera ray in world space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraRay {
-    /// Where it starts.
-    pub origin: Vec3,
-    /// Unit direction.
-    pub direction: Vec3,
-    /// The distance in scene units at which the near clipping plane is met.
-    pub near: f32,
-    /// The distance in scene units at which the far clipping plane is met.
-    pub far: f32,
-}
+#[cfg(test)]
+mod tests;

@@ -14,100 +14,11 @@
 //! It contains the `film` and the `sampler`.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
-use thiserror::Error;
 
-use super::{CameraRay, ImageSize};
-use crate::scene::error::{SceneError, list};
+use super::camera::{CameraError, CameraRay, load_clipping_planes};
+use super::{FieldOfView, ImageSize};
+use crate::scene::error::SceneError;
 use crate::scene::xml::Object;
-
-/// Along which side of the image the field of view is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FovAxis {
-    /// Horizontally.
-    X,
-    /// Vertically.
-    Y,
-    /// From corner to corner.
-    Diagonal,
-    /// Along the shorter side.
-    Smaller,
-    /// Along the longer side.
-    Larger,
-}
-
-impl FovAxis {
-    /// The names in scene files.
-    pub const NAMES: [&'static str; 5] = ["x", "y", "diagonal", "smaller", "larger"];
-
-    /// The axis with this name in scene files.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Some(match name {
-            "x" => Self::X,
-            "y" => Self::Y,
-            "diagonal" => Self::Diagonal,
-            "smaller" => Self::Smaller,
-            "larger" => Self::Larger,
-            _ => return None,
-        })
-    }
-}
-
-/// How much a camera sees.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FieldOfView {
-    /// Full angle in degrees, in (0, 180).
-    pub degrees: f64,
-    /// Where it is measured.
-    pub axis: FovAxis,
-}
-
-impl FieldOfView {
-    /// The field of view of a lens with this 35 mm equivalent focal length in mm.
-    pub fn from_focal_length(millimetres: f64) -> Self {
-        let diagonal = 36.0_f64.hypot(24.0);
-        Self {
-            degrees: 2.0 * (0.5 * diagonal / millimetres).atan().to_degrees(),
-            axis: FovAxis::Diagonal,
-        }
-    }
-
-    /// The tangent of half the horizontal field of view for an image of this width over height.
-    fn half_width(&self, aspect: f64) -> f64 {
-        let tangent = (0.5 * self.degrees).to_radians().tan();
-        match self.axis {
-            FovAxis::X => tangent,
-            FovAxis::Y => tangent * aspect,
-            FovAxis::Diagonal => tangent * aspect / 1.0_f64.hypot(aspect),
-            FovAxis::Smaller if aspect > 1.0 => tangent * aspect,
-            FovAxis::Larger if aspect < 1.0 => tangent * aspect,
-            FovAxis::Smaller | FovAxis::Larger => tangent,
-        }
-    }
-}
-
-/// What cannot be a camera.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum CameraError {
-    /// The field of view is out of range.
-    #[error("the field of view is {0} degrees; it must be above 0 and below 180")]
-    FieldOfView(f64),
-    /// The clipping planes are out of order.
-    #[error("the clipping planes are at {near} and {far}; they must satisfy 0 < near < far")]
-    ClippingPlanes {
-        /// `near_clip`
-        near: f64,
-        /// `far_clip`
-        far: f64,
-    },
-    /// `to_world` scales by zero or is not finite.
-    #[error("`to_world` of the camera has no inverse")]
-    SingularTransform,
-    /// Rays of the camera would have coordinates that `f32` cannot hold.
-    #[error(
-        "the camera is too far away, or its `to_world` or field of view is too extreme, for 32-bit coordinates"
-    )]
-    OutOfRange,
-}
 
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,36 +32,8 @@ pub struct Perspective {
 
 impl Perspective {
     pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
-        let field_of_view = match (object.float("fov")?, object.string("focal_length")?) {
-            (Some(_), Some(_)) => {
-                let message = "`fov` and `focal_length` cannot both be given";
-                return Err(object.parameter_error("focal_length", message));
-            }
-            (Some(degrees), None) => {
-                let name = object.string_or("fov_axis", "x")?;
-                let axis = FovAxis::from_name(name).ok_or_else(|| {
-                    let names = list(FovAxis::NAMES);
-                    object.parameter_error(
-                        "fov_axis",
-                        format!("`fov_axis` is `{name}`; it must be one of {names}"),
-                    )
-                })?;
-                FieldOfView { degrees, axis }
-            }
-            (None, focal_length) => {
-                let text = focal_length.unwrap_or("50mm");
-                let number = text.strip_suffix("mm").unwrap_or(text).trim().parse().ok();
-                let millimetres = number.filter(|&mm: &f64| mm > 0.0 && mm.is_finite()).ok_or_else(|| {
-                    let message = format!("`focal_length` is `{text}`; it must be a positive number of millimetres such as 50mm");
-                    object.parameter_error("focal_length", message)
-                })?;
-                FieldOfView::from_focal_length(millimetres)
-            }
-        };
-        let clip = (
-            object.float_or("near_clip", 1e-2)?,
-            object.float_or("far_clip", 1e4)?,
-        );
+        let field_of_view = FieldOfView::load(object)?;
+        let clip = load_clipping_planes(object)?;
         let offset = glam::DVec2::new(
             object.float_or("principal_point_offset_x", 0.0)?,
             object.float_or("principal_point_offset_y", 0.0)?,
@@ -172,13 +55,7 @@ impl Perspective {
         if !(field_of_view.degrees > 0.0 && field_of_view.degrees < 180.0) {
             return Err(CameraError::FieldOfView(field_of_view.degrees));
         }
-        if !(near > 0.0 && near < far) {
-            return Err(CameraError::ClippingPlanes { near, far });
-        }
-        let determinant = to_world.determinant();
-        if !(to_world.is_finite() && determinant != 0.0 && determinant.is_finite()) {
-            return Err(CameraError::SingularTransform);
-        }
+        CameraError::check(to_world, near, far)?;
         let camera = Self {
             to_world,
             field_of_view,
@@ -190,7 +67,7 @@ impl Perspective {
             width: 1,
             height: 1,
         };
-        let Projection { origin, corner, .. } = camera.project(square);
+        let PinholeView { origin, corner, .. } = camera.view(square);
         if !(origin.is_finite() && corner.length_squared().is_normal()) {
             return Err(CameraError::OutOfRange);
         }
@@ -198,7 +75,7 @@ impl Perspective {
     }
 
     /// The camera in front of a film of this size, ready to make rays.
-    pub fn project(&self, film: ImageSize) -> Projection {
+    pub fn view(&self, film: ImageSize) -> PinholeView {
         let (width, height) = (f64::from(film.width), f64::from(film.height));
         let half_width = self.field_of_view.half_width(width / height);
         let half_height = half_width * height / width;
@@ -209,7 +86,7 @@ impl Perspective {
         let shift = self.principal_point_offset;
         let corner_x = half_width * (1.0 - 2.0 * f64::from(shift.x));
         let corner_y = half_height * (1.0 - 2.0 * f64::from(shift.y));
-        Projection {
+        PinholeView {
             origin: self.to_world.transform_point3(DVec3::ZERO).as_vec3(),
             corner: axis(DVec3::new(corner_x, corner_y, 1.0)),
             per_column,
@@ -220,28 +97,34 @@ impl Perspective {
     }
 }
 
-/// A camera in front of a film: an affine map from raster positions to points of the plane at depth 1.
+/// A pinhole camera in front of a film: an affine map from raster positions to points of the plane at depth 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Projection {
-    origin: Vec3,
-    corner: Vec3,
-    per_column: Vec3,
-    per_row: Vec3,
-    near: f32,
-    far: f32,
+pub struct PinholeView {
+    pub(super) origin: Vec3,
+    pub(super) corner: Vec3,
+    pub(super) per_column: Vec3,
+    pub(super) per_row: Vec3,
+    pub(super) near: f32,
+    pub(super) far: f32,
 }
 
-impl Projection {
+impl PinholeView {
     /// The distance at which a ray of the camera with this unit direction meets the far clipping plane.
     pub fn far_along(&self, direction: Vec3) -> f32 {
         let normal = self.per_column.cross(self.per_row);
         self.far * self.corner.dot(normal) / direction.dot(normal)
     }
 
+    /// Where the ray through `raster` is at depth 1, relative to the pinhole, in world space.
+    #[inline]
+    pub(super) fn at_unit_depth(&self, raster: Vec2) -> Vec3 {
+        self.corner + self.per_column * raster.x + self.per_row * raster.y
+    }
+
     /// The ray through `raster`, in pixels from the upper left corner of the whole film (not of its crop window).
     #[inline]
     pub fn ray(&self, raster: Vec2) -> CameraRay {
-        let at_unit_depth = self.corner + self.per_column * raster.x + self.per_row * raster.y;
+        let at_unit_depth = self.at_unit_depth(raster);
         let length = at_unit_depth.length();
         CameraRay {
             origin: self.origin,
@@ -255,6 +138,7 @@ impl Projection {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::sensors::FovAxis;
 
     fn camera(axis: FovAxis) -> Perspective {
         let fov = FieldOfView {
@@ -271,7 +155,7 @@ mod tests {
             height: 100,
         };
         let edge = |axis, x, y| {
-            let ray = camera(axis).project(film).ray(Vec2::new(x, y));
+            let ray = camera(axis).view(film).ray(Vec2::new(x, y));
             ray.direction / ray.direction.z
         };
         assert!((edge(FovAxis::X, 0.0, 50.0) - Vec3::new(1.0, 0.0, 1.0)).length() < 1e-6);
@@ -285,7 +169,7 @@ mod tests {
     #[test]
     fn clipping_planes_are_planes() {
         let ray = camera(FovAxis::X)
-            .project(ImageSize {
+            .view(ImageSize {
                 width: 10,
                 height: 10,
             })
@@ -294,7 +178,7 @@ mod tests {
         assert!((ray.far * ray.direction.z - 100.0).abs() < 1e-4);
         assert!(
             (camera(FovAxis::X)
-                .project(ImageSize {
+                .view(ImageSize {
                     width: 10,
                     height: 10
                 })

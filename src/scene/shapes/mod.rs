@@ -39,7 +39,7 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, Sce
     };
     placement.check(object)?;
     let geometry = match object.plugin.as_str() {
-        "obj" | "ply" => mesh_file::load(object, &placement, loader),
+        "obj" | "ply" | "serialized" => mesh_file::load(object, &placement, loader),
         "rectangle" => Triangles::place(rectangle::rectangle(), &placement, object),
         "cube" => Triangles::place(cube::cube(), &placement, object),
         "sphere" => Sphere::load(object, &placement).map(Geometry::Sphere),
@@ -48,6 +48,7 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, Sce
         _ => Err(object.unsupported(&[
             "obj",
             "ply",
+            "serialized",
             "rectangle",
             "cube",
             "sphere",

@@ -1,0 +1,164 @@
+//! Which of many lights next-event estimation looks at: each by what it can contribute.
+//!
+//! Lights that have a place stand in a [tree](tree::LightTree); those that are infinitely far away are chosen beside it,
+//! each with the same probability as the whole tree. Wherever light can arrive, it has a positive probability.
+
+mod bounds;
+mod cone;
+mod emitters;
+mod tree;
+
+pub use bounds::LightBounds;
+pub use cone::Cone;
+
+use glam::Vec3;
+
+use super::Shape;
+use super::emitters::Emitter;
+use emitters::Place;
+use tree::{LightTree, PlacedLight};
+
+/// A way to choose one of a scene's emitters.
+#[derive(Clone, Debug)]
+pub struct LightChoice(Kind);
+
+#[derive(Clone, Debug)]
+enum Kind {
+    /// There is no light.
+    None,
+    /// There is no choice.
+    Only(usize),
+    Several {
+        /// Emitters that are infinitely far away.
+        distant: Vec<usize>,
+        /// All others.
+        tree: Option<LightTree>,
+        /// The probability of each that is infinitely far away, and of the tree.
+        each: f32,
+    },
+}
+
+/// An emitter chosen for a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChosenLight {
+    /// Its number among the scene's emitters.
+    pub emitter: usize,
+    /// The probability of this choice, positive.
+    pub probability: f32,
+    /// What is left of the uniform number, itself uniform in [0, 1).
+    pub remainder: f32,
+}
+
+impl LightChoice {
+    /// The choice among `emitters`; `shapes` are the scene's. Those that send nothing are never chosen.
+    pub fn new(emitters: &[Emitter], shapes: &[Shape]) -> Self {
+        let mut distant = Vec::new();
+        let mut placed: Vec<PlacedLight> = Vec::new();
+        for (index, emitter) in emitters.iter().enumerate() {
+            match Place::of(emitter, shapes) {
+                Some(Place::Distant) => distant.push(index),
+                Some(Place::Near(bounds)) => placed.push(PlacedLight {
+                    emitter: index as u32,
+                    bounds,
+                }),
+                None => {}
+            }
+        }
+        Self(match (&distant[..], &placed[..]) {
+            ([], []) => Kind::None,
+            (&[only], []) => Kind::Only(only),
+            ([], [only]) => Kind::Only(only.emitter as usize),
+            _ => {
+                let greatest = placed
+                    .iter()
+                    .map(|light| light.bounds.power)
+                    .fold(0.0, f32::max);
+                for light in &mut placed {
+                    // Powers are guessed by luminance, and a lamp without any may still light what another eye sees.
+                    let power = (light.bounds.power / greatest).max(LEAST_POWER);
+                    light.bounds.power = if power.is_nan() { 1.0 } else { power };
+                }
+                let tree = LightTree::new(placed);
+                let choices = distant.len() + usize::from(tree.is_some());
+                Kind::Several {
+                    distant,
+                    tree,
+                    each: 1.0 / choices as f32,
+                }
+            }
+        })
+    }
+
+    /// Whether the choice depends on the surface: otherwise there is at most one light.
+    #[inline]
+    pub fn depends_on_surface(&self) -> bool {
+        matches!(self.0, Kind::Several { .. })
+    }
+
+    /// Chooses an emitter for a surface at `position` (world space) with this unit `normal`, of either side, from the
+    /// uniform number `u` in [0, 1). `None` where no light can arrive.
+    #[inline]
+    pub fn choose(&self, position: Vec3, normal: Vec3, u: f32) -> Option<ChosenLight> {
+        match &self.0 {
+            Kind::None => None,
+            &Kind::Only(emitter) => Some(ChosenLight {
+                emitter,
+                probability: 1.0,
+                remainder: u,
+            }),
+            Kind::Several {
+                distant,
+                tree,
+                each,
+            } => {
+                let choices = distant.len() + usize::from(tree.is_some());
+                let scaled = u * choices as f32;
+                let index = (scaled as usize).min(choices - 1);
+                let remainder = (scaled - index as f32).min(1.0 - f32::EPSILON / 2.0);
+                match (distant.get(index), tree) {
+                    (Some(&emitter), _) => Some(ChosenLight {
+                        emitter,
+                        probability: *each,
+                        remainder,
+                    }),
+                    (None, Some(tree)) => {
+                        let chosen = tree.choose(position, normal, remainder)?;
+                        Some(ChosenLight {
+                            probability: chosen.probability * each,
+                            ..chosen
+                        })
+                    }
+                    (None, None) => None,
+                }
+            }
+        }
+    }
+
+    /// The probability with which [`Self::choose`] chooses `emitter` for the same surface.
+    #[inline]
+    pub fn probability(&self, position: Vec3, normal: Vec3, emitter: usize) -> f32 {
+        match &self.0 {
+            Kind::None => 0.0,
+            &Kind::Only(only) => f32::from(u8::from(emitter == only)),
+            Kind::Several {
+                distant,
+                tree,
+                each,
+            } => {
+                if distant.contains(&emitter) {
+                    return *each;
+                }
+                let tree = tree.as_ref();
+                tree.map_or(0.0, |tree| {
+                    tree.probability(position, normal, emitter) * each
+                })
+            }
+        }
+    }
+}
+
+/// The least power of a light, as a share of the greatest.
+const LEAST_POWER: f32 = 1e-6;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,252 @@
+use std::f32::consts::PI;
+use std::fmt::Write;
+
+use glam::Vec3;
+use proptest::prelude::*;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::*;
+use crate::sampling::{RandomStream, StreamKey};
+use crate::scene::{LoadOptions, Scene};
+use crate::spectrum::Rgb;
+
+fn random(tile: u32) -> RandomStream {
+    RandomStream::new(StreamKey {
+        seed: 11,
+        tile,
+        pass: 0,
+    })
+}
+
+fn scene(objects: &str) -> Scene {
+    let text = format!(r#"<scene version="3.0.0"><sensor type="perspective"/>{objects}</scene>"#);
+    Scene::from_xml(&text, &LoadOptions::default()).unwrap()
+}
+
+fn choice(scene: &Scene) -> LightChoice {
+    LightChoice::new(&scene.emitters, &scene.shapes)
+}
+
+/// `count` lamps of every kind and of very different brightness, in a cube of side 20 about the origin.
+fn lamps(count: usize, seed: u32) -> Scene {
+    let mut random = random(seed);
+    let mut text = String::new();
+    for lamp in 0..count {
+        let [x, y, z] = [(); 3].map(|()| 20.0 * random.uniform() - 10.0);
+        let [a, b, c] = [(); 3].map(|()| random.uniform() - 0.5);
+        let power = 10.0_f32.powf(4.0 * random.uniform() - 2.0);
+        let turned = format!(
+            r#"<transform name="to_world"><scale value="{}"/><lookat origin="{x} {y} {z}" target="{} {} {}" up="{b} {c} {a}"/></transform>"#,
+            0.1 + random.uniform(),
+            x + a,
+            y + b,
+            z + c,
+        );
+        let shape = |plugin: &str| {
+            format!(
+                r#"<shape type="{plugin}">{turned}<emitter type="area"><rgb name="radiance" value="{power}"/></emitter></shape>"#
+            )
+        };
+        let text = &mut text;
+        match lamp % 7 {
+            0 => write!(text, r#"<emitter type="point"><point name="position" value="{x} {y} {z}"/><rgb name="intensity" value="{power}"/></emitter>"#),
+            1 => write!(text, r#"<emitter type="spot">{turned}<rgb name="intensity" value="{power}"/></emitter>"#),
+            2 => write!(text, "{}", shape("rectangle")),
+            3 => write!(text, "{}", shape("disk")),
+            4 => write!(text, "{}", shape("sphere")),
+            5 => write!(text, "{}", shape("cylinder")),
+            _ => write!(text, "{}", shape("cube")),
+        }
+        .unwrap();
+    }
+    scene(&text)
+}
+
+/// A place on a surface among the lamps, and its normal.
+fn surface(random: &mut RandomStream) -> (Vec3, Vec3) {
+    let position = Vec3::from([(); 3].map(|()| 24.0 * random.uniform() - 12.0));
+    let normal = crate::sampling::warp::sphere(random.uniform_2d());
+    (position, normal)
+}
+
+#[test]
+fn without_a_choice_there_is_nothing_to_choose() {
+    let place = (Vec3::ZERO, Vec3::Z, 0.25);
+    let none = choice(&scene(""));
+    assert!(!none.depends_on_surface());
+    assert_eq!(none.choose(place.0, place.1, place.2), None);
+    assert_eq!(none.probability(place.0, place.1, 0), 0.0);
+    let black = r#"<emitter type="point"><rgb name="intensity" value="0"/></emitter>"#;
+    for only in [r#"<emitter type="constant"/>"#, r#"<emitter type="spot"/>"#] {
+        let only = choice(&scene(&format!("{black}{only}")));
+        assert!(!only.depends_on_surface());
+        let chosen = ChosenLight {
+            emitter: 1,
+            probability: 1.0,
+            remainder: 0.25,
+        };
+        assert_eq!(only.choose(place.0, place.1, place.2), Some(chosen));
+        assert_eq!(only.probability(place.0, place.1, 0), 0.0);
+        assert_eq!(only.probability(place.0, place.1, 1), 1.0);
+    }
+}
+
+#[test]
+fn lights_from_afar_stand_beside_the_tree() {
+    let point = r#"<emitter type="point"/>"#;
+    let scene = scene(&format!(
+        r#"{point}<emitter type="constant"/>{point}<emitter type="directional"/>{point}"#
+    ));
+    let choice = choice(&scene);
+    let probabilities = [0, 1, 2, 3, 4].map(|i| choice.probability(Vec3::X, Vec3::X, i));
+    assert_eq!((probabilities[1], probabilities[3]), (1.0 / 3.0, 1.0 / 3.0));
+    for near in [0, 2, 4] {
+        assert!(
+            (1.0 / 15.0..1.0 / 5.0).contains(&probabilities[near]),
+            "{probabilities:?}"
+        );
+    }
+}
+
+/// Lights are drawn with the probabilities that are told, which are a distribution but for places where a group promises
+/// light and none of its parts does.
+#[test]
+fn choices_follow_their_probabilities() {
+    const DRAWS: u32 = 20_000;
+    for count in [2, 3, 10, 100] {
+        let scene = lamps(count, count as u32);
+        let choice = choice(&scene);
+        let mut random = random(99);
+        for _ in 0..20 {
+            let (position, normal) = surface(&mut random);
+            let mut counts = vec![0.0; count];
+            let mut nothing = 0.0;
+            for _ in 0..DRAWS {
+                let u = random.uniform();
+                let Some(chosen) = choice.choose(position, normal, u) else {
+                    nothing += 1.0;
+                    continue;
+                };
+                counts[chosen.emitter] += 1.0;
+                let probability = choice.probability(position, normal, chosen.emitter);
+                assert_eq!(chosen.probability, probability);
+                assert!((0.0..1.0).contains(&chosen.remainder));
+            }
+            let probabilities: Vec<f64> = (0..count)
+                .map(|emitter| f64::from(choice.probability(position, normal, emitter)))
+                .collect();
+            let total: f64 = probabilities.iter().sum();
+            assert!(total < 1.0 + 1e-5, "{total}");
+            let (mut statistic, mut freedom, mut rest) = (0.0, 0.0, [nothing, 1.0 - total]);
+            for (count, probability) in counts.into_iter().zip(probabilities) {
+                let expected = probability * f64::from(DRAWS);
+                if expected < 8.0 {
+                    rest = [rest[0] + count, rest[1] + probability];
+                } else {
+                    statistic += (count - expected) * (count - expected) / expected;
+                    freedom += 1.0;
+                }
+            }
+            let expected = rest[1].max(0.0) * f64::from(DRAWS);
+            if expected >= 8.0 {
+                statistic += (rest[0] - expected) * (rest[0] - expected) / expected;
+                freedom += 1.0;
+            } else {
+                assert!(rest[0] < 30.0, "{rest:?}");
+            }
+            if freedom > 1.5 {
+                let p = ChiSquared::new(freedom - 1.0).unwrap().sf(statistic);
+                assert!(p > 1e-5, "{count} lamps: {statistic} of {freedom}, p = {p}");
+            }
+        }
+    }
+}
+
+/// Points that shine everywhere leave no place without light: the probabilities add up to 1.
+#[test]
+fn probabilities_add_up() {
+    let mut text = String::new();
+    let mut random = random(7);
+    for _ in 0..50 {
+        let [x, y, z] = [(); 3].map(|()| random.uniform());
+        write!(
+            text,
+            r#"<emitter type="point"><point name="position" value="{x} {y} {z}"/></emitter>"#
+        )
+        .unwrap();
+    }
+    let choice = choice(&scene(&text));
+    for _ in 0..100 {
+        let (position, normal) = surface(&mut random);
+        let total: f32 = (0..50)
+            .map(|i| choice.probability(position, normal, i))
+            .sum();
+        assert!((total - 1.0).abs() < 1e-4, "{total}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    /// Where a light does arrive, it can be chosen.
+    #[test]
+    fn light_that_arrives_can_be_chosen(count in 2_usize..40, seed in 0_u32..1 << 20) {
+        let scene = lamps(count, seed);
+        let choice = choice(&scene);
+        let mut random = random(seed ^ 1);
+        for _ in 0..50 {
+            let (position, normal) = surface(&mut random);
+            for (index, emitter) in scene.emitters.iter().enumerate() {
+                let u = random.uniform_2d();
+                let sample = emitter.sample::<Rgb>(&scene.shapes, position, &(), u);
+                if sample.is_some_and(|sample| sample.weight.0[0] > 0.0) {
+                    let probability = choice.probability(position, normal, index);
+                    prop_assert!(probability > 0.0, "{:?}", scene.emitters[index]);
+                }
+            }
+        }
+    }
+}
+
+/// The variance of direct light on a floor below 100 lamps, against that of choosing each alike.
+#[test]
+fn the_right_lamps_are_chosen() {
+    let scene = lamps(100, 3);
+    let choice = choice(&scene);
+    let mut random = random(5);
+    let (mut squares, mut uniform_squares, mut mean, mut uniform_mean) = (0.0, 0.0, 0.0, 0.0);
+    const DRAWS: usize = 400_000;
+    for _ in 0..DRAWS {
+        let [x, z] = random.uniform_2d().map(|u| 20.0 * u - 10.0);
+        let (position, normal) = (Vec3::new(x, -10.5, z), Vec3::Y);
+        let u = random.uniform_2d();
+        let arrives = |emitter: usize| {
+            let sample = scene.emitters[emitter].sample::<Rgb>(&scene.shapes, position, &(), u);
+            sample.map_or(0.0, |sample| {
+                f64::from(sample.weight.0[0] * sample.direction.dot(normal).max(0.0) / PI)
+            })
+        };
+        let v = random.uniform();
+        if let Some(chosen) = choice.choose(position, normal, v) {
+            let value = arrives(chosen.emitter) / f64::from(chosen.probability);
+            mean += value / DRAWS as f64;
+            squares += value * value / DRAWS as f64;
+        }
+        let value = 100.0 * arrives((v * 100.0) as usize);
+        uniform_mean += value / DRAWS as f64;
+        uniform_squares += value * value / DRAWS as f64;
+    }
+    let (variance, uniform_variance) = (
+        squares - mean * mean,
+        uniform_squares - uniform_mean * uniform_mean,
+    );
+    println!("mean {mean} and {uniform_mean}, variance {variance} and {uniform_variance}");
+    let error = ((variance + uniform_variance) / DRAWS as f64).sqrt();
+    assert!(
+        (mean - uniform_mean).abs() < 4.0 * error,
+        "{mean}, {uniform_mean} +- {error}"
+    );
+    assert!(
+        10.0 * variance < uniform_variance,
+        "{variance}, {uniform_variance}"
+    );
+}
