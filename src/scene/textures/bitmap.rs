@@ -2,7 +2,7 @@
 //!
 //! | parameter | type | meaning | default |
 //! |---|---|---|---|
-//! | `filename` | string | the image (PNG, JPEG, BMP, TGA, RGBE, OpenEXR or PFM), beside the scene or in a `<path>` | required |
+//! | `filename` | string | the image (PNG, JPEG, BMP, Radiance HDR, OpenEXR or PFM), beside the scene or in a `<path>` | required |
 //! | `raw` | boolean | take the numbers of the file as they are, not as encoded by sRGB | false |
 //! | `filter_type` | string | `bilinear` or `nearest`: what lies between texels | `bilinear` |
 //! | `wrap_mode` | string | `repeat`, `mirror` or `clamp`: what lies outside of [0, 1] | `repeat` |
@@ -14,9 +14,9 @@ use std::sync::Arc;
 
 use glam::{Affine2, IVec2, UVec2, Vec2};
 
-use super::image_file::{ImageFile, Pixels};
 use super::luminance;
 use crate::scene::error::SceneError;
+use crate::scene::image_file::ImageFile;
 use crate::scene::xml::Object;
 use crate::spectrum::{Colour, Reflectances, SpectrumArithmetic};
 
@@ -66,12 +66,13 @@ struct Neighbours {
 }
 
 impl Texels {
-    pub fn new(image: ImageFile) -> Self {
+    pub fn new(image: &ImageFile) -> Self {
         Self {
-            size: UVec2::new(image.width as u32, image.height as u32),
-            values: match image.pixels {
-                Pixels::Grey(values) => Values::Grey(values),
-                Pixels::Rgb(values) => Values::Colour(Reflectances::new(values)),
+            size: UVec2::new(image.size.width, image.size.height),
+            values: if image.channels.colours() == 1 {
+                Values::Grey(image.rgb().map(|[grey, ..]| grey).collect())
+            } else {
+                Values::Colour(Reflectances::new(image.rgb().collect()))
             },
         }
     }

@@ -8,10 +8,10 @@ use glam::{Affine2, DMat4, Mat2, Vec2};
 
 use super::bitmap::Texels;
 use super::{
-    AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture, image_file,
-    luminance,
+    AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture, luminance,
 };
 use crate::scene::error::SceneError;
+use crate::scene::image_file::{ImageFile, ImageFileError};
 use crate::scene::spectra::{Quantity, Stated, number, stated};
 use crate::scene::xml::{Document, Object, SpectrumProperty};
 use crate::spectrum::SpectralCurve;
@@ -136,20 +136,16 @@ impl<'d> TextureLoader<'d> {
         if let Some(known) = self.images.get(&key) {
             return Ok(known.clone());
         }
-        let path = &key.0;
-        let located = |problem: String| {
-            let message = format!("cannot read the image {}: {problem}", path.display());
-            object.parameter_error("filename", message)
-        };
-        let image = image_file::read(path)
-            .and_then(|image| image.decoded(raw))
-            .map_err(located)?;
-        if let Some((x, y, number)) = image.first_outside_unit() {
-            return Err(located(format!(
-                "the pixel ({x}, {y}) has {number}; a texture has numbers from 0 to 1"
-            )));
+        let located =
+            |problem: ImageFileError| object.parameter_error("filename", problem.to_string());
+        let image = ImageFile::read(&key.0).map_err(located)?;
+        let image = if raw { image } else { image.into_linear() };
+        if let Some(problem) = image.find_unfit(|number| (0.0..=1.0).contains(&number)) {
+            let problem = format!("{problem}; a texture has numbers from 0 to 1");
+            let file = key.0;
+            return Err(located(ImageFileError { file, problem }));
         }
-        let texels = Arc::new(Texels::new(image));
+        let texels = Arc::new(Texels::new(&image));
         self.images.insert(key, texels.clone());
         Ok(texels)
     }

@@ -5,7 +5,6 @@
 
 mod bitmap;
 mod checkerboard;
-mod image_file;
 mod loader;
 mod mesh_attribute;
 

@@ -98,6 +98,7 @@ impl<R: Read> Stream<R> {
         let has = |flag| flags & flag != 0;
         let is_double = has(flags::DOUBLE_PRECISION);
         let mut mesh = MeshData {
+            attributes: Vec::new(),
             positions: self.array("position", vertices, is_double)?,
             ..MeshData::default()
         };
