@@ -72,7 +72,7 @@ impl Scene {
 /// What is built up while the objects of a file are loaded.
 pub(super) struct Loader<'d> {
     pub document: &'d Document,
-    textures: TextureLoader<'d>,
+    pub textures: TextureLoader<'d>,
     shapes: Vec<Shape>,
     materials: Vec<Material>,
     emitters: Vec<Emitter>,
@@ -120,7 +120,7 @@ impl<'d> Loader<'d> {
         for child in root.children(Class::Emitter) {
             // An area light outside of a shape is there to be referred to from shapes.
             if child.object.plugin != "area" {
-                let emitter = emitters::load(&child.object, &self)?;
+                let emitter = emitters::load(&child.object, &mut self)?;
                 self.add_surrounding(&child.object, emitter)?;
             }
         }

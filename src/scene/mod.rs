@@ -24,7 +24,7 @@ pub use bsdfs::{
 };
 pub use emitters::{
     AreaLight, ConstantLight, DirectionalLight, Emitter, EnvironmentMap, LightSample, PointLight,
-    SpotLight,
+    Projector, SpotLight,
 };
 pub use error::{Location, SceneError};
 pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};

@@ -5,6 +5,7 @@ mod constant;
 mod directional;
 mod environment;
 mod point;
+mod projector;
 mod spot;
 #[cfg(test)]
 mod tests;
@@ -14,6 +15,7 @@ pub use constant::ConstantLight;
 pub use directional::DirectionalLight;
 pub use environment::EnvironmentMap;
 pub use point::PointLight;
+pub use projector::Projector;
 pub use spot::SpotLight;
 
 use glam::Vec3;
@@ -27,10 +29,11 @@ use crate::sampling::SolidAnglePdf;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// An emitter of a scene file that stands on its own.
-pub(super) fn load(object: &Object, loader: &Loader) -> Result<Emitter, SceneError> {
+pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Emitter, SceneError> {
     match object.plugin.as_str() {
         "point" => PointLight::load(object).map(Emitter::Point),
-        "spot" => SpotLight::load(object).map(Emitter::Spot),
+        "spot" => SpotLight::load(object, loader).map(Emitter::Spot),
+        "projector" => Projector::load(object, loader).map(Emitter::Projector),
         "directional" => DirectionalLight::load(object).map(Emitter::Directional),
         "constant" => ConstantLight::load(object).map(Emitter::Constant),
         "envmap" => EnvironmentMap::load(object, loader).map(Emitter::Environment),
@@ -49,7 +52,15 @@ pub(super) fn load_area(object: &Object, shape: ShapeId) -> Result<AreaLight, Sc
     }
 }
 
-const SUPPORTED: [&str; 6] = ["area", "point", "spot", "directional", "constant", "envmap"];
+const SUPPORTED: [&str; 7] = [
+    "area",
+    "point",
+    "spot",
+    "projector",
+    "directional",
+    "constant",
+    "envmap",
+];
 
 /// A source of light.
 #[derive(Clone, Debug)]
@@ -60,6 +71,8 @@ pub enum Emitter {
     Point(PointLight),
     /// `spot`: a point with a cone of light.
     Spot(SpotLight),
+    /// `projector`: a point that casts an image.
+    Projector(Projector),
     /// `directional`: infinitely far away, in one direction.
     Directional(DirectionalLight),
     /// `constant`: the same radiance from every direction.
@@ -98,6 +111,7 @@ impl Emitter {
             Self::Area(light) => light.sample::<C>(shapes, reference, wavelengths, u),
             Self::Point(light) => light.sample::<C>(reference, wavelengths),
             Self::Spot(light) => light.sample::<C>(reference, wavelengths),
+            Self::Projector(light) => light.sample::<C>(reference, wavelengths),
             Self::Directional(light) => Some(light.sample::<C>(wavelengths)),
             Self::Constant(light) => Some(light.sample::<C>(wavelengths, u)),
             Self::Environment(light) => light.sample::<C>(wavelengths, u),
@@ -106,7 +120,10 @@ impl Emitter {
 
     /// Whether only next-event estimation can find this light.
     pub fn is_delta(&self) -> bool {
-        matches!(self, Self::Point(_) | Self::Spot(_) | Self::Directional(_))
+        matches!(
+            self,
+            Self::Point(_) | Self::Spot(_) | Self::Projector(_) | Self::Directional(_)
+        )
     }
 
     /// Whether it is what rays see that leave the scene.

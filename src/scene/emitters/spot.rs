@@ -5,17 +5,20 @@
 //! | `intensity` | spectrum | radiant intensity within the beam, in W/(sr nm), or in linear sRGB | 1 |
 //! | `cutoff_angle` | float | angle from the axis in degrees, in (0, 180], beyond which there is no light | 20 |
 //! | `beam_width` | float | angle from the axis in degrees, up to the cutoff, within which the intensity is full | 3/4 of the cutoff |
+//! | `texture` | texture | factor for the intensity, in [0, 1]; its square holds the cone, which is then narrower than 90 degrees | 1 |
 //! | `to_world` | transform | moves and turns the light; one that scales unevenly makes the cone elliptical | identity |
 //!
 //! Between beam and cutoff the intensity falls linearly with the angle.
 
-use glam::{DMat3, DMat4, Mat3, Vec3};
+use glam::{DMat3, DMat4, Mat3, Vec2, Vec3};
 
 use super::LightSample;
 use crate::scene::error::SceneError;
 use crate::scene::light_choice::Cone;
+use crate::scene::load::Loader;
 use crate::scene::spectra::{Quantity, spectrum_or};
 use crate::scene::xml::Object;
+use crate::scene::{SpectrumTexture, SurfaceParameters};
 use crate::spectrum::{Colour, SpectralCurve};
 
 /// A spot light.
@@ -25,6 +28,8 @@ pub struct SpotLight {
     pub position: Vec3,
     /// Radiant intensity within the beam.
     pub intensity: SpectralCurve,
+    /// What the intensity is multiplied by: it fills the cone.
+    texture: SpectrumTexture,
     /// From directions in world space to those in which the axis is +z.
     to_local: Mat3,
     cutoff: Angle,
@@ -49,14 +54,16 @@ impl Angle {
 }
 
 impl SpotLight {
-    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
+    pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Self, SceneError> {
         let intensity = spectrum_or(object, "intensity", Quantity::Emission, 1.0)?;
-        if let Some(texture) = object.child_named("texture") {
-            return Err(texture.object.unsupported(&[]));
-        }
+        let texture = loader.textures.reflectance(object, "texture", 1.0)?;
         let cutoff = object.float_or("cutoff_angle", 20.0)?;
         if !(cutoff > 0.0 && cutoff <= 180.0) {
             let message = format!("`cutoff_angle` is {cutoff}; it must be above 0 and at most 180");
+            return Err(object.parameter_error("cutoff_angle", message));
+        }
+        if texture.varies() && cutoff >= 90.0 {
+            let message = "a spot with a `texture` needs a `cutoff_angle` below 90";
             return Err(object.parameter_error("cutoff_angle", message));
         }
         let beam = object.float_or("beam_width", 0.75 * cutoff)?;
@@ -76,6 +83,7 @@ impl SpotLight {
         Ok(Self {
             position,
             intensity,
+            texture,
             to_local,
             cutoff: Angle::from_degrees(cutoff),
             beam: Angle::from_degrees(beam),
@@ -96,10 +104,10 @@ impl SpotLight {
         })
     }
 
-    /// The share of the full intensity that leaves in `direction` (world space), in [0, 1].
+    /// The share of the full intensity that leaves in a local direction (unit), in [0, 1].
     #[inline]
-    pub fn falloff(&self, direction: Vec3) -> f32 {
-        let cosine = (self.to_local * direction).normalize_or_zero().z;
+    fn falloff(&self, local: Vec3) -> f32 {
+        let cosine = local.z;
         if cosine >= self.beam.cosine {
             1.0
         } else if cosine > self.cutoff.cosine {
@@ -119,12 +127,23 @@ impl SpotLight {
         let offset = self.position - reference;
         let distance = offset.length();
         let direction = offset / distance;
-        let falloff = self.falloff(-direction);
-        (distance > 0.0 && falloff > 0.0).then(|| LightSample {
+        let local = (self.to_local * -direction).normalize_or_zero();
+        let falloff = self.falloff(local);
+        if !(distance > 0.0 && falloff > 0.0) {
+            return None;
+        }
+        let half_size = local.z * self.cutoff.radians.tan();
+        let on_texture = SurfaceParameters {
+            uv: 0.5 + 0.5 * Vec2::new(local.x, local.y) / half_size,
+            ..SurfaceParameters::default()
+        };
+        let intensity = C::evaluate(&self.intensity, wavelengths)
+            * self.texture.spectrum::<C>(&on_texture, wavelengths);
+        Some(LightSample {
             direction,
             distance,
             surface: None,
-            weight: C::evaluate(&self.intensity, wavelengths) * (falloff / (distance * distance)),
+            weight: intensity * (falloff / (distance * distance)),
             pdf: None,
         })
     }

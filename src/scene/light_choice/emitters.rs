@@ -37,13 +37,23 @@ impl Place {
                 }))
             }
             Emitter::Point(light) if light.intensity.is_black() => None,
-            Emitter::Point(light) => {
-                Some(Self::at(light.position, &light.intensity, Cone::EVERYWHERE))
-            }
+            Emitter::Point(light) => Some(Self::at(
+                light.position,
+                luminance(&light.intensity),
+                Cone::EVERYWHERE,
+            )),
             Emitter::Spot(light) if light.intensity.is_black() => None,
             Emitter::Spot(light) => {
                 let directions = light.directions().unwrap_or(Cone::EVERYWHERE);
-                Some(Self::at(light.position, &light.intensity, directions))
+                Some(Self::at(
+                    light.position,
+                    luminance(&light.intensity),
+                    directions,
+                ))
+            }
+            Emitter::Projector(light) => {
+                let luminance = light.luminance();
+                (luminance > 0.0).then(|| Self::at(light.position, luminance, light.directions()))
             }
             Emitter::Directional(light) => (!light.irradiance.is_black()).then_some(Self::Distant),
             Emitter::Constant(light) => (!light.radiance.is_black()).then_some(Self::Distant),
@@ -53,11 +63,11 @@ impl Place {
 
     /// The place of a point that shines into `directions`. Its power is that of a point which shines everywhere: so lights
     /// compare by what arrives where they do shine.
-    fn at(position: Vec3, intensity: &SpectralCurve, directions: Cone) -> Self {
+    fn at(position: Vec3, luminance: f32, directions: Cone) -> Self {
         Self::Near(LightBounds {
             min: position,
             max: position,
-            power: 4.0 * PI * luminance(intensity),
+            power: 4.0 * PI * luminance,
             normals: directions,
             spread: 0.0,
         })

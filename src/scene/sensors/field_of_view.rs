@@ -55,7 +55,7 @@ impl FieldOfView {
     }
 
     /// What `fov` and `fov_axis`, or `focal_length`, of a camera say.
-    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
+    pub(in crate::scene) fn load(object: &Object) -> Result<Self, SceneError> {
         let field_of_view = match (object.float("fov")?, object.string("focal_length")?) {
             (Some(_), Some(_)) => {
                 let message = "`fov` and `focal_length` cannot both be given";
@@ -86,7 +86,7 @@ impl FieldOfView {
     }
 
     /// The tangent of half the horizontal field of view for an image of this width over height.
-    pub(super) fn half_width(&self, aspect: f64) -> f64 {
+    pub(in crate::scene) fn half_width(&self, aspect: f64) -> f64 {
         let tangent = (0.5 * self.degrees).to_radians().tan();
         match self.axis {
             FovAxis::X => tangent,

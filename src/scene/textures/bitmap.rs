@@ -133,6 +133,11 @@ impl Bitmap {
         Ok(bitmap)
     }
 
+    /// Columns and rows of the image.
+    pub fn size(&self) -> UVec2 {
+        self.texels.size
+    }
+
     /// The texels around the texture coordinates `uv`.
     fn neighbours(&self, uv: Vec2) -> Neighbours {
         let position = self.to_uv.transform_point2(uv) * self.texels.size.as_vec2();
@@ -183,11 +188,8 @@ impl Bitmap {
             + (lower_left * (1.0 - right) + lower_right * right) * lower
     }
 
-    pub(super) fn spectrum<C: Colour>(
-        &self,
-        uv: Vec2,
-        wavelengths: &C::Wavelengths,
-    ) -> C::Spectrum {
+    /// The colour at the texture coordinates `uv` at a path's wavelengths: a reflectance.
+    pub fn spectrum<C: Colour>(&self, uv: Vec2, wavelengths: &C::Wavelengths) -> C::Spectrum {
         self.mixed(uv, |texel| match &self.texels.values {
             Values::Grey(values) => C::Spectrum::splat(values[texel]),
             Values::Colour(values) => C::evaluate_entry(values, texel, wavelengths),
@@ -219,7 +221,8 @@ impl Bitmap {
         self.to_uv.matrix2.transpose() * by_place
     }
 
-    pub(super) fn mean(&self) -> f32 {
+    /// The mean luminance of all texels.
+    pub fn mean(&self) -> f32 {
         let count = self.texels.size.x as usize * self.texels.size.y as usize;
         let sum: f64 = (0..count)
             .map(|texel| f64::from(self.texels.number(texel)))
