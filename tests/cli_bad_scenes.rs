@@ -17,8 +17,13 @@ fn unknown_plugins_of_every_class() {
         format!("the {class} `nonsense` is not supported; supported are: {list}")
     };
     for (class, old, place, list) in [
-        ("integrator", "path", "2:1", "path"),
-        ("sensor", "perspective", "3:1", "perspective"),
+        ("integrator", "path", "2:1", "path, direct, moment"),
+        (
+            "sensor",
+            "perspective",
+            "3:1",
+            "perspective, thinlens, orthographic",
+        ),
         ("sampler", "independent", "5:1", "independent"),
         ("film", "hdrfilm", "6:1", "hdrfilm"),
         ("rfilter", "box", "6:89", "box, tent, gaussian, mitchell"),
@@ -26,7 +31,7 @@ fn unknown_plugins_of_every_class() {
             "shape",
             "sphere",
             "8:1",
-            "obj, ply, rectangle, cube, sphere, disk, cylinder",
+            "obj, ply, serialized, rectangle, cube, sphere, disk, cylinder",
         ),
         (
             "bsdf",
@@ -35,7 +40,12 @@ fn unknown_plugins_of_every_class() {
             "diffuse, conductor, roughconductor, dielectric, roughdielectric, thindielectric, plastic, roughplastic, principled, \
              principledthin, blendbsdf, mask, bumpmap, normalmap, null, twosided",
         ),
-        ("emitter", "constant", "9:1", "area, point, constant"),
+        (
+            "emitter",
+            "constant",
+            "9:1",
+            "area, point, spot, projector, directional, constant, envmap",
+        ),
     ] {
         let quoted = |name: &str| format!("type=\"{name}\"");
         check(
