@@ -3,6 +3,7 @@
 mod chi_square;
 mod conservation;
 mod mitsuba;
+mod size;
 
 use std::sync::LazyLock;
 
