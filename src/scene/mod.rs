@@ -18,7 +18,7 @@ pub use bsdfs::{
     Bsdf, BsdfSample, BsdfValue, CoatedBase, Conductor, ConductorIndex, ConductorMaterial,
     Dielectric, DielectricMaterial, Diffuse, DiffuseMaterial, Distribution, Indices, Material,
     Model, Null, Perturbed, Plastic, PlasticMaterial, Principled, PrincipledMaterial,
-    PrincipledThin, PrincipledThinMaterial, RoughConductor, RoughConductorMaterial,
+    PrincipledThin, PrincipledThinMaterial, Refraction, RoughConductor, RoughConductorMaterial,
     RoughDielectric, RoughDielectricMaterial, RoughPlastic, RoughPlasticMaterial, Roughness,
     SeenPoint, Side, ThinDielectric,
 };

@@ -7,7 +7,7 @@ use crate::embree::{Hits, Rays};
 use crate::lanes::VectorColumn;
 use crate::room::make_room;
 use crate::sampling::{SequencePoint, SolidAnglePdf};
-use crate::scene::HitCoordinates;
+use crate::scene::{HitCoordinates, Refraction};
 use crate::spectrum::Colour;
 
 /// The camera paths of a batch: what all particles that descend from one have in common. Paths of one pixel stand side
@@ -32,8 +32,8 @@ pub(super) struct Segments<C: Colour> {
     pub throughput: Vec<C::Spectrum>,
     /// Where the particle stands in its sequence of random numbers.
     pub point: Vec<SequencePoint>,
-    /// Whether only the hero wavelength is left: it was refracted apart from the others. Empty in variants that do not disperse.
-    pub is_single: Vec<bool>,
+    /// What refraction has done to it. Empty in variants that do not refract.
+    pub refraction: Vec<Refraction>,
     /// The density with which its direction was drawn; infinite for camera rays, which no other technique can draw.
     pub direction_pdf: Vec<SolidAnglePdf>,
     /// The surface that each left, where next-event estimation chose its light by it; else empty.
@@ -114,7 +114,7 @@ impl<C: Colour> Segments<C> {
             path: Vec::new(),
             throughput: Vec::new(),
             point: Vec::new(),
-            is_single: Vec::new(),
+            refraction: Vec::new(),
             direction_pdf: Vec::new(),
             origins: Vec::new(),
             rays: Rays::default(),
@@ -131,7 +131,7 @@ impl<C: Colour> Segments<C> {
         make_room(&mut self.path, count);
         make_room(&mut self.throughput, count);
         make_room(&mut self.point, count);
-        make_room(&mut self.is_single, count);
+        make_room(&mut self.refraction, count);
         make_room(&mut self.direction_pdf, count);
         self.origins.clear();
         self.rays.resize(count);

@@ -9,6 +9,7 @@ use super::variant::Variant;
 use crate::film::FilmTile;
 use crate::lanes::CHUNK;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
+use crate::scene::Refraction;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Starts `job.samples` paths for every pixel of the tile, pixel by pixel.
@@ -82,8 +83,8 @@ pub(super) fn start<C: Colour, V: Variant>(
             );
         }
     }
-    if V::DISPERSES {
-        segments.is_single.resize(count, false);
+    if V::REFRACTS {
+        segments.refraction.resize(count, Refraction::NONE);
     }
     paths.radiance.resize(count, C::Spectrum::ZERO);
     engine.emission.prepare(paths);

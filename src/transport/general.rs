@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::variant::{Arrival, Scattering, Variant};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{Frame, Sampler};
-use crate::scene::{Bsdf, BsdfSamples, BsdfValues, SeenPoint, SurfaceParameters};
+use crate::scene::{Bsdf, BsdfSamples, BsdfValues, Refraction, SeenPoint, SurfaceParameters};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// See the module.
@@ -14,7 +14,7 @@ pub(super) struct General;
 impl Variant for General {
     type Scattering<S: SpectrumArithmetic> = Local<S>;
     const CHOOSES_LOBES: bool = true;
-    const DISPERSES: bool = true;
+    const REFRACTS: bool = true;
 }
 
 /// A bsdf where a path has met it.
@@ -25,15 +25,15 @@ pub(super) struct Local<S> {
     /// Unit direction to where the path comes from, in that frame.
     outgoing: Vec3,
     bsdf: Bsdf<S>,
-    /// Whether only the path's hero wavelength is left.
-    is_single: bool,
+    /// What refraction has done to the path.
+    refraction: Refraction,
 }
 
 impl<S: SpectrumArithmetic> Local<S> {
     /// What is left of `spectrum` on a path that wavelengths leave in different directions.
     #[inline]
     fn dispersed(&self, spectrum: S, is_dispersive: bool) -> S {
-        if is_dispersive && !self.is_single {
+        if is_dispersive && !self.refraction.is_single {
             spectrum.only_hero()
         } else {
             spectrum
@@ -76,13 +76,18 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
             frame,
             outgoing: seen.outgoing,
             bsdf: material.bsdf::<C>(&seen, arrival.wavelengths)?,
-            is_single: arrival.is_single,
+            refraction: arrival.refraction,
         })
     }
 
     #[inline]
     fn albedo(&self) -> S {
         self.bsdf.albedo(self.outgoing)
+    }
+
+    #[inline]
+    fn refraction(&self) -> Refraction {
+        self.refraction
     }
 
     #[inline]
@@ -119,7 +124,7 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
             samples.direction.put(lane, direction);
             samples.weight[lane] = vertex.dispersed(sample.weight, sample.is_dispersive);
             samples.pdf[lane] = sample.pdf.0;
-            samples.is_single[lane] = vertex.is_single || sample.is_dispersive;
+            samples.refraction[lane] = vertex.refraction.then(sample.eta, sample.is_dispersive);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::variant::{Arrival, Scattering, Variant};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::Sampler;
-use crate::scene::{BsdfSamples, BsdfValues, Diffuse};
+use crate::scene::{BsdfSamples, BsdfValues, Diffuse, Refraction};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// See the module.
@@ -12,7 +12,7 @@ pub(super) struct Matte;
 impl Variant for Matte {
     type Scattering<S: SpectrumArithmetic> = Diffuse<S>;
     const CHOOSES_LOBES: bool = false;
-    const DISPERSES: bool = false;
+    const REFRACTS: bool = false;
 }
 
 impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
@@ -27,6 +27,11 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     #[inline(always)]
     fn albedo(&self) -> S {
         self.reflectance
+    }
+
+    #[inline(always)]
+    fn refraction(&self) -> Refraction {
+        Refraction::NONE
     }
 
     #[inline(always)]

@@ -86,9 +86,9 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         segments
             .direction_pdf
             .extend(lanes.clone().map(|lane| SolidAnglePdf(samples.pdf[lane])));
-        if V::DISPERSES {
-            let single = lanes.clone().map(|lane| samples.is_single[lane]);
-            segments.is_single.extend(single);
+        if V::REFRACTS {
+            let refraction = lanes.clone().map(|lane| samples.refraction[lane]);
+            segments.refraction.extend(refraction);
         }
         if light_is_chosen {
             let receivers = lanes.map(|lane| vertices.receiver(parent(lane)));

@@ -5,7 +5,9 @@ use std::fmt::Debug;
 
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{Sampler, SequencePoint};
-use crate::scene::{BsdfSamples, BsdfValues, HitCoordinates, Material, Shape, Side, SurfacePoint};
+use crate::scene::{
+    BsdfSamples, BsdfValues, HitCoordinates, Material, Refraction, Shape, Side, SurfacePoint,
+};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// What the surfaces of a scene can do, as far as the engine is compiled for it.
@@ -16,8 +18,8 @@ pub(super) trait Variant: Send + Sync + 'static {
     /// Whether one of several lobes may be drawn: that takes a third random number for a direction.
     const CHOOSES_LOBES: bool;
 
-    /// Whether wavelengths may be refracted apart.
-    const DISPERSES: bool;
+    /// Whether light may be refracted.
+    const REFRACTS: bool;
 }
 
 /// A path arrives at a surface.
@@ -36,8 +38,8 @@ pub(super) struct Arrival<'a, C: Colour> {
     pub direction: glam::Vec3,
     /// Which wavelengths it carries.
     pub wavelengths: &'a C::Wavelengths,
-    /// Whether of those only the hero is left.
-    pub is_single: bool,
+    /// What refraction has done to it.
+    pub refraction: Refraction,
     /// Where it stands in its sequence of random numbers.
     pub sequence: SequencePoint,
     /// How often it has been scattered before.
@@ -53,6 +55,9 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
 
     /// The share of the arriving light that is scattered, in [0, 1].
     fn albedo(&self) -> S;
+
+    /// What refraction has done to the path that arrives.
+    fn refraction(&self) -> Refraction;
 
     /// See [`Bsdf::shininess`](crate::scene::Bsdf::shininess).
     fn shininess(&self) -> f32;

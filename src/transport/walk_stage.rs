@@ -31,6 +31,12 @@ pub(super) fn decide<C: Colour, V: Variant>(
             .iter()
             .map(|&throughput| scalar(throughput)),
     );
+    if V::REFRACTS {
+        // As Mitsuba's roulette: light is not less important for being compressed.
+        for (importance, bsdf) in particles.importance.iter_mut().zip(&vertices.bsdf) {
+            *importance *= bsdf.refraction().squared_index;
+        }
+    }
     particles
         .albedo
         .extend(vertices.bsdf.iter().map(|bsdf| scalar(bsdf.albedo())));

@@ -3,7 +3,7 @@
 //!
 //! Here directions are in world space: the frames of diffuse surfaces need not be stored.
 
-use super::Diffuse;
+use super::{Diffuse, Refraction};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{Frame, warp};
 use crate::spectrum::SpectrumArithmetic;
@@ -24,8 +24,8 @@ pub(crate) struct BsdfSamples<S> {
     pub weight: [S; CHUNK],
     /// The density of the direction over solid angle; infinite in a discrete lobe.
     pub pdf: [f32; CHUNK],
-    /// Whether only the path's hero wavelength goes on.
-    pub is_single: [bool; CHUNK],
+    /// What refraction has done to the path that goes on.
+    pub refraction: [Refraction; CHUNK],
 }
 
 impl<S: SpectrumArithmetic> BsdfValues<S> {
@@ -64,7 +64,7 @@ impl<S: SpectrumArithmetic> BsdfSamples<S> {
             direction: VectorLanes::default(),
             weight: [S::ZERO; CHUNK],
             pdf: [0.0; CHUNK],
-            is_single: [false; CHUNK],
+            refraction: [Refraction::NONE; CHUNK],
         }
     }
 
