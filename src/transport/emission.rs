@@ -10,7 +10,7 @@ use super::surface::SurfaceChunk;
 use super::variant::{Arrival, Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::{Sampler, SolidAnglePdf, power_heuristic};
-use crate::scene::{Emitter, EmitterId, Refraction, Side};
+use crate::scene::{Emitter, EmitterId, Side};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
@@ -81,17 +81,12 @@ pub(super) fn arrive<C: Colour, V: Variant>(
                 shape,
                 material,
                 side,
-                point: surfaces.points.get(lane),
-                hit: segments.hit(i),
-                direction: segments.rays.direction(i).into(),
                 wavelengths,
-                refraction: if V::REFRACTS {
-                    segments.refraction[i]
-                } else {
-                    Refraction::NONE
-                },
-                sequence: segments.point[i],
                 depth,
+                segments,
+                index: i,
+                points: &surfaces.points,
+                lane,
             };
             let Some(bsdf) = V::Scattering::at(&arrival, sampler) else {
                 continue;

@@ -44,12 +44,10 @@ impl<S: SpectrumArithmetic> Local<S> {
 impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
     #[inline]
     fn at<C: Colour<Spectrum = S>>(arrival: &Arrival<C>, sampler: &mut Sampler) -> Option<Self> {
-        let Arrival {
-            material, point, ..
-        } = arrival;
+        let (material, point) = (arrival.material, arrival.point());
         let facing = arrival.side.facing(point.shading_normal);
         let (frame, front, parameters) = if material.needs_parameters() {
-            let parameters = arrival.shape.geometry.parameters(&arrival.hit, point);
+            let parameters = arrival.shape.geometry.parameters(&arrival.hit(), &point);
             let front = parameters.shading_frame(point.shading_normal);
             let frame = Frame {
                 normal: facing,
@@ -61,14 +59,14 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
             (frame, frame, SurfaceParameters::default())
         };
         let choice = if material.is_mixed() {
-            sampler.material_choice(arrival.sequence, arrival.depth)
+            sampler.material_choice(arrival.sequence(), arrival.depth)
         } else {
             0.0
         };
         let seen = SeenPoint {
             side: arrival.side,
             frame: front,
-            outgoing: frame.to_local(-arrival.direction),
+            outgoing: frame.to_local(-arrival.direction()),
             parameters,
             choice,
         };
@@ -76,7 +74,7 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
             frame,
             outgoing: seen.outgoing,
             bsdf: material.bsdf::<C>(&seen, arrival.wavelengths)?,
-            refraction: arrival.refraction,
+            refraction: arrival.refraction(),
         })
     }
 

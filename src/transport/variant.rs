@@ -3,10 +3,14 @@
 
 use std::fmt::Debug;
 
+use glam::Vec3;
+
+use super::batch::Segments;
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{Sampler, SequencePoint};
 use crate::scene::{
-    BsdfSamples, BsdfValues, HitCoordinates, Material, Refraction, Shape, Side, SurfacePoint,
+    BsdfSamples, BsdfValues, HitCoordinates, Material, Refraction, Shape, Side, SurfaceLanes,
+    SurfacePoint,
 };
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -22,7 +26,8 @@ pub(super) trait Variant: Send + Sync + 'static {
     const REFRACTS: bool;
 }
 
-/// A path arrives at a surface.
+/// A path arrives at a surface. Everything else about it is found by those who ask: a variant does not pay for what it does not
+/// want to know.
 pub(super) struct Arrival<'a, C: Colour> {
     /// The shape.
     pub shape: &'a Shape,
@@ -30,20 +35,50 @@ pub(super) struct Arrival<'a, C: Colour> {
     pub material: &'a Material,
     /// The side that the path sees.
     pub side: Side,
-    /// Where it was hit.
-    pub point: SurfacePoint,
-    /// The same in the terms of the intersection layer.
-    pub hit: HitCoordinates,
-    /// The unit direction in which the path came, in world space.
-    pub direction: glam::Vec3,
-    /// Which wavelengths it carries.
+    /// Which wavelengths the path carries.
     pub wavelengths: &'a C::Wavelengths,
-    /// What refraction has done to it.
-    pub refraction: Refraction,
-    /// Where it stands in its sequence of random numbers.
-    pub sequence: SequencePoint,
     /// How often it has been scattered before.
     pub depth: u32,
+    /// The paths that arrive, and which of them this is.
+    pub segments: &'a Segments<C>,
+    /// Its index among those.
+    pub index: usize,
+    /// Where its chunk arrives.
+    pub points: &'a SurfaceLanes<CHUNK>,
+    /// Its lane in that chunk.
+    pub lane: usize,
+}
+
+impl<C: Colour> Arrival<'_, C> {
+    /// The point that was hit.
+    #[inline]
+    pub fn point(&self) -> SurfacePoint {
+        self.points.get(self.lane)
+    }
+
+    /// The same in the terms of the intersection layer.
+    #[inline]
+    pub fn hit(&self) -> HitCoordinates {
+        self.segments.hit(self.index)
+    }
+
+    /// The unit direction in which the path came, in world space.
+    #[inline]
+    pub fn direction(&self) -> Vec3 {
+        self.segments.rays.direction(self.index).into()
+    }
+
+    /// Where it stands in its sequence of random numbers.
+    #[inline]
+    pub fn sequence(&self) -> SequencePoint {
+        self.segments.point[self.index]
+    }
+
+    /// What refraction has done to it, in a variant that [refracts](Variant::REFRACTS).
+    #[inline]
+    pub fn refraction(&self) -> Refraction {
+        self.segments.refraction[self.index]
+    }
 }
 
 /// How a surface scatters light at one vertex. Directions are unit vectors in world space.
