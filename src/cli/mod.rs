@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod compare;
+mod explain;
 mod interrupt;
 mod models;
 mod output;
@@ -30,6 +31,7 @@ enum Command {
     Render(Box<render::RenderArgs>),
     Compare(Box<compare::CompareArgs>),
     Accuracy(Box<accuracy::AccuracyArgs>),
+    Explain(explain::ExplainArgs),
     Models(models::ModelsArgs),
 }
 
@@ -45,6 +47,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(*arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Accuracy(arguments) => accuracy::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Models(arguments) => models::run(arguments)
             .map(|()| ExitCode::SUCCESS)
             .map_err(Into::into),

@@ -10,15 +10,11 @@ use cohort::scene::{LoadOptions, Scene};
 
 use super::parse::{parse_definition, parse_size};
 
-/// Which scene, and how large.
+/// Which scene.
 #[derive(Args)]
-pub struct SceneArgs {
+pub struct SceneFileArgs {
     /// Scene file in Mitsuba 3's XML format; without one, the built-in Cornell box with a knot
     scene: Option<PathBuf>,
-
-    /// Size of the image in pixels, such as 800x800 [default: what the scene says]
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
-    size: Option<(i64, i64)>,
 
     /// Set one of the scene's $names
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = parse_definition)]
@@ -29,27 +25,19 @@ pub struct SceneArgs {
     models: Option<PathBuf>,
 }
 
-impl SceneArgs {
-    /// The scene file; none for the built-in scene.
-    pub fn file(&self) -> Option<&PathBuf> {
-        self.scene.as_ref()
-    }
+/// Which scene, and how large.
+#[derive(Args)]
+pub struct SceneArgs {
+    #[command(flatten)]
+    file: SceneFileArgs,
 
-    /// The scene as the user named it.
-    pub fn name(&self) -> String {
-        let path = self.scene.as_ref().map(|scene| scene.display().to_string());
-        path.unwrap_or_else(|| "built-in cornell-knot.xml".to_owned())
-    }
+    /// Size of the image in pixels, such as 800x800 [default: what the scene says]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Option<(i64, i64)>,
+}
 
-    /// The name of the scene, for files that are made from it.
-    pub fn stem(&self) -> String {
-        let stem = self.scene.as_ref().and_then(|scene| scene.file_stem());
-        stem.map_or("cornell-knot".into(), |stem| {
-            stem.to_string_lossy().into_owned()
-        })
-    }
-
-    /// Loads the scene with `threads` threads, at the size that was asked for.
+impl SceneFileArgs {
+    /// Loads the scene with `threads` threads.
     pub fn load(&self, threads: NonZeroUsize) -> Result<Scene, Box<dyn Error>> {
         let options = LoadOptions {
             definitions: self.definitions.clone(),
@@ -59,10 +47,40 @@ impl SceneArgs {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.get().min(MAX_THREADS))
             .build()?;
-        let mut scene = pool.install(|| match &self.scene {
+        Ok(pool.install(|| match &self.scene {
             Some(path) => Scene::load(path, &options),
             None => Scene::built_in(&options),
-        })?;
+        })?)
+    }
+}
+
+impl SceneArgs {
+    /// The scene file; none for the built-in scene.
+    pub fn file(&self) -> Option<&PathBuf> {
+        self.file.scene.as_ref()
+    }
+
+    /// The scene as the user named it.
+    pub fn name(&self) -> String {
+        let path = self
+            .file
+            .scene
+            .as_ref()
+            .map(|scene| scene.display().to_string());
+        path.unwrap_or_else(|| "built-in cornell-knot.xml".to_owned())
+    }
+
+    /// The name of the scene, for files that are made from it.
+    pub fn stem(&self) -> String {
+        let stem = self.file.scene.as_ref().and_then(|scene| scene.file_stem());
+        stem.map_or("cornell-knot".into(), |stem| {
+            stem.to_string_lossy().into_owned()
+        })
+    }
+
+    /// Loads the scene with `threads` threads, at the size that was asked for.
+    pub fn load(&self, threads: NonZeroUsize) -> Result<Scene, Box<dyn Error>> {
+        let mut scene = self.file.load(threads)?;
         if let Some((width, height)) = self.size {
             scene.film = scene.film.resized(width, height)?;
         }
@@ -71,7 +89,7 @@ impl SceneArgs {
 
     /// The text of the scene file, and whatever else decides what the scene is.
     pub fn text(&self) -> Result<Vec<u8>, Box<dyn Error>> {
-        let mut text = match &self.scene {
+        let mut text = match &self.file.scene {
             Some(path) => std::fs::read(path)?,
             None => Vec::new(),
         };
@@ -81,8 +99,8 @@ impl SceneArgs {
 
     /// The values of the scene's `$name`s, with that of the models' folder.
     pub fn definitions(&self) -> Vec<(String, String)> {
-        let mut all = self.definitions.clone();
-        if let Some(models) = &self.models
+        let mut all = self.file.definitions.clone();
+        if let Some(models) = &self.file.models
             && !all.iter().any(|(name, _)| name == "models")
         {
             all.push(("models".to_owned(), models.display().to_string()));

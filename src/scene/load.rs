@@ -9,6 +9,7 @@ use super::emitters::{self, Emitter};
 use super::error::SceneError;
 use super::integrators::{self, PathIntegrator};
 use super::shapes::{self, Geometry, Shape};
+use super::source::{Source, Sources};
 use super::textures::TextureLoader;
 use super::xml::{self, Class, Document, Object, SceneSource};
 use super::{EmitterId, IndependentSampler, MaterialId, Scene, ShapeId, sensors};
@@ -76,6 +77,9 @@ pub(super) struct Loader<'d> {
     shapes: Vec<Shape>,
     materials: Vec<Material>,
     emitters: Vec<Emitter>,
+    /// Where the materials come from, and the emitters.
+    material_sources: Vec<Option<Source>>,
+    emitter_sources: Vec<Source>,
     /// Materials by their object in the file, so that a bsdf that many shapes refer to is loaded once.
     known_materials: HashMap<*const Object, MaterialId>,
     /// What shapes without a bsdf are made of: those that do not emit, and those that do.
@@ -90,6 +94,8 @@ impl<'d> Loader<'d> {
             shapes: Vec::new(),
             materials: Vec::new(),
             emitters: Vec::new(),
+            material_sources: Vec::new(),
+            emitter_sources: Vec::new(),
             known_materials: HashMap::new(),
             default_materials: [None; 2],
         }
@@ -111,11 +117,11 @@ impl<'d> Loader<'d> {
             film,
             sampler,
         } = sensors::load(&sensor.object)?;
-        for child in root.children(Class::Bsdf) {
-            self.material(&child.object)?;
-        }
         for child in root.children(Class::Shape) {
             self.shape(&child.object)?;
+        }
+        for child in root.children(Class::Bsdf) {
+            self.check_material(&child.object)?;
         }
         for child in root.children(Class::Emitter) {
             // An area light outside of a shape is there to be referred to from shapes.
@@ -134,6 +140,11 @@ impl<'d> Loader<'d> {
             film,
             integrator,
             sampler,
+            sources: Sources {
+                materials: self.material_sources,
+                emitters: self.emitter_sources,
+                sensor: Source::of(&sensor.object),
+            },
         })
     }
 
@@ -143,7 +154,21 @@ impl<'d> Loader<'d> {
                 object.error("the scene already has an emitter that surrounds it; it can have one")
             );
         }
+        self.add_emitter(object, emitter);
+        Ok(())
+    }
+
+    fn add_emitter(&mut self, object: &Object, emitter: Emitter) -> EmitterId {
         self.emitters.push(emitter);
+        self.emitter_sources.push(Source::of(object));
+        EmitterId(self.emitters.len() as u32 - 1)
+    }
+
+    /// Refuses a bsdf that is wrong, though no shape uses it and so it is not kept.
+    fn check_material(&mut self, object: &Arc<Object>) -> Result<(), SceneError> {
+        if !self.known_materials.contains_key(&Arc::as_ptr(object)) {
+            bsdfs::load(object, &mut self.textures)?;
+        }
         Ok(())
     }
 
@@ -152,13 +177,14 @@ impl<'d> Loader<'d> {
             return Ok(known);
         }
         let material = bsdfs::load(object, &mut self.textures)?;
-        let id = self.add_material(material);
+        let id = self.add_material(material, Some(Source::of(object)));
         self.known_materials.insert(Arc::as_ptr(object), id);
         Ok(id)
     }
 
-    fn add_material(&mut self, material: Material) -> MaterialId {
+    fn add_material(&mut self, material: Material, source: Option<Source>) -> MaterialId {
         self.materials.push(material);
+        self.material_sources.push(source);
         MaterialId(self.materials.len() as u32 - 1)
     }
 
@@ -167,11 +193,12 @@ impl<'d> Loader<'d> {
     fn default_material(&mut self, is_light: bool) -> MaterialId {
         let known = self.default_materials[usize::from(is_light)];
         known.unwrap_or_else(|| {
-            let id = self.add_material(if is_light {
+            let material = if is_light {
                 Material::black()
             } else {
                 Material::default()
-            });
+            };
+            let id = self.add_material(material, None);
             self.default_materials[usize::from(is_light)] = Some(id);
             id
         })
@@ -194,8 +221,7 @@ impl<'d> Loader<'d> {
                 {
                     return Err(object.error("this shape cannot be a light: it has no area"));
                 }
-                self.emitters.push(Emitter::Area(light));
-                Some(EmitterId(self.emitters.len() as u32 - 1))
+                Some(self.add_emitter(&child.object, Emitter::Area(light)))
             }
             None => None,
         };

@@ -1,6 +1,7 @@
 //! What is rendered: scene files, shapes, materials, lights and cameras.
 
 mod bsdfs;
+mod effects;
 mod emitters;
 mod error;
 mod image_file;
@@ -10,6 +11,7 @@ mod load;
 pub mod mesh;
 mod sensors;
 mod shapes;
+mod source;
 mod spectra;
 mod textures;
 pub mod xml;
@@ -23,6 +25,7 @@ pub use bsdfs::{
     SeenPoint, Side, ThinDielectric,
 };
 pub(crate) use bsdfs::{BsdfSamples, BsdfValues};
+pub use effects::{Effect, Effects};
 pub use emitters::{
     AreaLight, ConstantLight, DirectionalLight, Emitter, EnvironmentMap, LightSample, PointLight,
     Projector, SpotLight,
@@ -42,6 +45,7 @@ pub use shapes::{
     ShapeSample, Sphere, SurfaceParameters, SurfacePoint, TriangleAttributes, Triangles,
 };
 pub(crate) use shapes::{CornerLanes, Parallelogram, SurfaceLanes};
+pub use source::{Source, Sources};
 pub use textures::{
     AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture,
 };
@@ -90,6 +94,8 @@ pub struct Scene {
     pub integrator: PathIntegrator,
     /// How many samples are taken.
     pub sampler: IndependentSampler,
+    /// Which objects of the file all this comes from.
+    pub sources: Sources,
 }
 
 /// `independent`: what the scene file says of the samples.

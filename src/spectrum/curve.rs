@@ -214,7 +214,10 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_index)?;
         Ok(Self {
             rgb: [table.at(SODIUM_D); 3],
-            shape: Shape::Tabulated(table),
+            shape: match table.flat_between(WAVELENGTH_MIN, WAVELENGTH_MAX) {
+                Some(index) => Shape::Constant(index),
+                None => Shape::Tabulated(table),
+            },
         })
     }
 

@@ -129,6 +129,28 @@ impl PiecewiseLinear {
         }
     }
 
+    /// The one value that it has from `first_nm` to `last_nm`, if it has one.
+    pub(super) fn flat_between(&self, first_nm: f32, last_nm: f32) -> Option<f32> {
+        let (nm, is_flat) = match self {
+            Self::Regular(table) => {
+                let first = table.intervals[0].value;
+                let is_flat =
+                    |interval: &Interval| interval.value == first && interval.difference == 0.0;
+                (
+                    [table.first_nm, table.last_nm],
+                    table.intervals.iter().all(is_flat),
+                )
+            }
+            Self::Irregular(table) => {
+                let first = table.values[0];
+                let last = table.nm.len() - 1;
+                let is_flat = table.values.iter().all(|&value| value == first);
+                ([table.nm[0], table.nm[last]], is_flat)
+            }
+        };
+        (is_flat && nm[0] <= first_nm && last_nm <= nm[1]).then(|| self.at(first_nm))
+    }
+
     /// Whether it is zero at all wavelengths.
     pub(super) fn is_zero(&self) -> bool {
         match self {

@@ -12,6 +12,7 @@ use glam::Vec3;
 use super::Bsdf;
 use super::material::SeenPoint;
 use super::perturbed::Tilted;
+use super::surface::Surface;
 use crate::scene::error::SceneError;
 use crate::scene::textures::{Bitmap, TextureLoader};
 use crate::scene::xml::{Class, Object};
@@ -26,7 +27,8 @@ pub(super) struct BumpMap {
 }
 
 impl BumpMap {
-    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
+    /// The bumpy surface; the nested one where the height is the same everywhere.
+    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Surface, SceneError> {
         let [heights] = object.children(Class::Texture)[..] else {
             return Err(object.error("a `bumpmap` contains one texture, its height map"));
         };
@@ -36,7 +38,11 @@ impl BumpMap {
             nested: Tilted::load(object, textures)?,
         };
         object.finish()?;
-        Ok(map)
+        Ok(if map.scale == 0.0 || map.heights.uniform().is_some() {
+            map.nested.surface
+        } else {
+            Surface::BumpMap(Box::new(map))
+        })
     }
 
     pub fn at<C: Colour>(

@@ -16,7 +16,7 @@ use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::textures::{SpectrumTexture, TextureLoader};
 use crate::scene::xml::Object;
-use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
 
 /// A smooth interface as the scene states it; also that of `thindielectric` and `roughdielectric`.
 #[derive(Clone, Debug)]
@@ -48,6 +48,16 @@ impl DielectricMaterial {
             specular_reflectance: reflectance,
             specular_transmittance: transmittance,
         })
+    }
+
+    /// Whether light passes as if nothing were there: there is no change of index, and no colour.
+    pub(super) fn is_invisible(&self) -> bool {
+        let is_one = |curve: &SpectralCurve| curve.is_constant() && curve.rgb() == [1.0; 3];
+        let is_clear = match &self.specular_transmittance {
+            SpectrumTexture::Uniform(transmittance) => is_one(transmittance),
+            SpectrumTexture::Varying(_) => false,
+        };
+        is_clear && self.indices.are_equal()
     }
 
     pub(super) fn needs_parameters(&self) -> bool {

@@ -10,6 +10,7 @@ use glam::Vec3;
 use super::surface::Surface;
 use super::{Bsdf, DiffuseMaterial, Side};
 use crate::sampling::Frame;
+use crate::scene::effects::Effect;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::textures::{SpectrumTexture, TextureLoader};
@@ -90,6 +91,11 @@ impl Material {
     /// Whether all that it does is to reflect diffusely, the same at every point: [`Self::matte`] then says all.
     pub fn is_matte(&self) -> bool {
         self.tree.is_matte()
+    }
+
+    /// The effects that it calls for, each once.
+    pub(in crate::scene) fn effects(&self) -> Vec<Effect> {
+        self.tree.effects()
     }
 
     /// The diffuse reflectance of a side, where it has one that is the same at every point.

@@ -17,6 +17,7 @@ mod conductor;
 mod conductor_materials;
 mod dielectric;
 mod diffuse;
+mod effects;
 mod fresnel;
 mod index;
 mod mask;

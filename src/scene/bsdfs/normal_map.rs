@@ -11,10 +11,14 @@ use glam::Vec3;
 use super::Bsdf;
 use super::material::SeenPoint;
 use super::perturbed::Tilted;
+use super::surface::Surface;
 use crate::scene::error::SceneError;
 use crate::scene::textures::{SpectrumTexture, TextureLoader};
 use crate::scene::xml::Object;
-use crate::spectrum::Colour;
+use crate::spectrum::{Colour, SpectralCurve};
+
+/// The colour of a normal that is not tilted.
+const STRAIGHT: [f32; 3] = [0.5, 0.5, 1.0];
 
 /// A map of normals over a bsdf.
 #[derive(Clone, Debug)]
@@ -24,7 +28,8 @@ pub(super) struct NormalMap {
 }
 
 impl NormalMap {
-    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
+    /// The tilted surface; the nested one where no normal is tilted.
+    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Surface, SceneError> {
         if !object.has("normalmap") {
             return Err(object.missing("normalmap"));
         }
@@ -33,7 +38,11 @@ impl NormalMap {
             nested: Tilted::load(object, textures)?,
         };
         object.finish()?;
-        Ok(map)
+        let is_straight = |normal: &SpectralCurve| normal.rgb() == STRAIGHT;
+        Ok(match &map.normals {
+            SpectrumTexture::Uniform(normal) if is_straight(normal) => map.nested.surface,
+            _ => Surface::NormalMap(Box::new(map)),
+        })
     }
 
     pub fn at<C: Colour>(

@@ -12,7 +12,8 @@ use std::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 
 use super::index::Indices;
-use super::{BsdfSample, BsdfValue, fresnel, mixed_shininess};
+use super::surface::Surface;
+use super::{BsdfSample, BsdfValue, DiffuseMaterial, fresnel, mixed_shininess};
 use crate::sampling::warp;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
@@ -91,14 +92,29 @@ pub struct PlasticMaterial {
 }
 
 impl PlasticMaterial {
-    pub(super) fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
+    /// The plastic; its base alone where there is no coating.
+    pub(super) fn load(
+        object: &Object,
+        textures: &mut TextureLoader,
+    ) -> Result<Surface, SceneError> {
         let base = CoatedBase::load(object, textures)?;
         object.finish()?;
-        Ok(Self {
+        Ok(if base.eta == 1.0 {
+            Surface::Diffuse(DiffuseMaterial {
+                reflectance: base.diffuse_reflectance,
+            })
+        } else {
+            Surface::Plastic(Self::new(base))
+        })
+    }
+
+    /// With a smooth coating on `base`.
+    pub(super) fn new(base: CoatedBase) -> Self {
+        Self {
             internal_reflectance: fresnel::diffuse_reflectance(1.0 / base.eta),
             specular_sampling_weight: base.specular_sampling_weight(),
             base,
-        })
+        }
     }
 
     pub(super) fn at<C: Colour>(

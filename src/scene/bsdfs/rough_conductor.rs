@@ -12,6 +12,7 @@ use super::conductor::{Conductor, ConductorMaterial};
 use super::conductor_materials::ConductorIndex;
 use super::microfacet::Microfacets;
 use super::roughness::Roughness;
+use super::surface::Surface;
 use super::{BsdfSample, BsdfValue, fresnel};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
@@ -29,14 +30,22 @@ pub struct RoughConductorMaterial {
 }
 
 impl RoughConductorMaterial {
-    pub(super) fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
+    /// The rough metal; the smooth one where it has no roughness.
+    pub(super) fn load(
+        object: &Object,
+        textures: &mut TextureLoader,
+    ) -> Result<Surface, SceneError> {
         let metal = ConductorMaterial {
             index: ConductorIndex::load(object)?,
             specular_reflectance: textures.reflectance(object, "specular_reflectance", 1.0)?,
         };
         let roughness = Roughness::load(object, textures)?;
         object.finish()?;
-        Ok(Self { metal, roughness })
+        Ok(if roughness.is_zero() {
+            Surface::Conductor(metal)
+        } else {
+            Surface::RoughConductor(Self { metal, roughness })
+        })
     }
 
     pub(super) fn at<C: Colour>(

@@ -14,6 +14,7 @@ use glam::Vec3;
 use super::dielectric::{Dielectric, DielectricMaterial};
 use super::microfacet::Microfacets;
 use super::roughness::Roughness;
+use super::surface::Surface;
 use super::{BsdfSample, BsdfValue, Side, fresnel};
 use crate::sampling::SolidAnglePdf;
 use crate::scene::error::SceneError;
@@ -32,7 +33,11 @@ pub struct RoughDielectricMaterial {
 }
 
 impl RoughDielectricMaterial {
-    pub(super) fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
+    /// The rough interface; the smooth one where it has no roughness.
+    pub(super) fn load(
+        object: &Object,
+        textures: &mut TextureLoader,
+    ) -> Result<Surface, SceneError> {
         let interface = DielectricMaterial::load_parameters(object, textures)?;
         let roughness = Roughness::load(object, textures)?;
         object.finish()?;
@@ -41,9 +46,13 @@ impl RoughDielectricMaterial {
                 "`int_ior` and `ext_ior` of a `roughdielectric` must differ: there would be no interface",
             ));
         }
-        Ok(Self {
-            interface,
-            roughness,
+        Ok(if roughness.is_zero() {
+            Surface::Dielectric(interface)
+        } else {
+            Surface::RoughDielectric(Self {
+                interface,
+                roughness,
+            })
         })
     }
 

@@ -14,8 +14,9 @@ use std::f32::consts::FRAC_1_PI;
 use glam::{Vec2, Vec3};
 
 use super::microfacet::{Distribution, Microfacets};
-use super::plastic::CoatedBase;
+use super::plastic::{CoatedBase, PlasticMaterial};
 use super::rough_coating::RoughCoating;
+use super::surface::Surface;
 use super::{BsdfSample, BsdfValue, fresnel, mixed_shininess, roughness};
 use crate::sampling::warp;
 use crate::scene::error::SceneError;
@@ -39,7 +40,11 @@ pub struct RoughPlasticMaterial {
 }
 
 impl RoughPlasticMaterial {
-    pub(super) fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
+    /// The rough plastic; the smooth one where its coating has no roughness.
+    pub(super) fn load(
+        object: &Object,
+        textures: &mut TextureLoader,
+    ) -> Result<Surface, SceneError> {
         let base = CoatedBase::load(object, textures)?;
         let (distribution, sample_visible) = roughness::kind(object)?;
         let alpha = object.float_or("alpha", 0.1)? as f32;
@@ -50,14 +55,17 @@ impl RoughPlasticMaterial {
                 "`int_ior` and `ext_ior` of a `roughplastic` must differ: there would be no coating",
             ));
         }
-        Ok(Self {
+        if alpha == 0.0 {
+            return Ok(Surface::Plastic(PlasticMaterial::new(base)));
+        }
+        Ok(Surface::RoughPlastic(Self {
             coating: RoughCoating::of(distribution, alpha, base.eta),
             facets: Microfacets::new(distribution, Vec2::splat(alpha), sample_visible),
             specular_sampling_weight: base.specular_sampling_weight(),
             base,
             distribution,
             alpha,
-        })
+        }))
     }
 
     pub(super) fn at<C: Colour>(

@@ -75,7 +75,26 @@ impl Roughness {
     }
 
     pub(super) fn needs_parameters(&self) -> bool {
-        !self.is_isotropic || self.alpha_u.varies() || self.alpha_v.varies()
+        !self.is_isotropic || self.varies()
+    }
+
+    /// Whether it differs from point to point.
+    pub(super) fn varies(&self) -> bool {
+        self.alpha_u.varies() || self.alpha_v.varies()
+    }
+
+    /// Whether there is none: then the surface is its smooth form.
+    pub(super) fn is_zero(&self) -> bool {
+        let is_zero = |alpha: &FloatTexture| matches!(alpha, FloatTexture::Uniform(0.0));
+        is_zero(&self.alpha_u) && is_zero(&self.alpha_v)
+    }
+
+    /// Whether it may not be the same along u and v.
+    pub(super) fn is_anisotropic(&self) -> bool {
+        match (&self.alpha_u, &self.alpha_v) {
+            (FloatTexture::Uniform(u), FloatTexture::Uniform(v)) => u != v,
+            _ => !self.is_isotropic,
+        }
     }
 }
 

@@ -77,18 +77,12 @@ impl Surface {
         match object.plugin.as_str() {
             "diffuse" => DiffuseMaterial::load(object, textures).map(Self::Diffuse),
             "conductor" => ConductorMaterial::load(object, textures).map(Self::Conductor),
-            "roughconductor" => {
-                RoughConductorMaterial::load(object, textures).map(Self::RoughConductor)
-            }
-            "dielectric" => DielectricMaterial::load(object, textures).map(Self::Dielectric),
-            "roughdielectric" => {
-                RoughDielectricMaterial::load(object, textures).map(Self::RoughDielectric)
-            }
-            "thindielectric" => {
-                DielectricMaterial::load(object, textures).map(Self::ThinDielectric)
-            }
-            "plastic" => PlasticMaterial::load(object, textures).map(Self::Plastic),
-            "roughplastic" => RoughPlasticMaterial::load(object, textures).map(Self::RoughPlastic),
+            "roughconductor" => RoughConductorMaterial::load(object, textures),
+            "dielectric" => Self::interface(object, textures, Self::Dielectric),
+            "roughdielectric" => RoughDielectricMaterial::load(object, textures),
+            "thindielectric" => Self::interface(object, textures, Self::ThinDielectric),
+            "plastic" => PlasticMaterial::load(object, textures),
+            "roughplastic" => RoughPlasticMaterial::load(object, textures),
             "principled" => {
                 let material = PrincipledMaterial::load(object, textures)?;
                 Ok(Self::Principled(Box::new(material)))
@@ -99,14 +93,8 @@ impl Surface {
             }
             "mask" => Mask::load(object, textures),
             "blendbsdf" => Blend::load(object, textures),
-            "bumpmap" => {
-                let map = BumpMap::load(object, textures)?;
-                Ok(Self::BumpMap(Box::new(map)))
-            }
-            "normalmap" => {
-                let map = NormalMap::load(object, textures)?;
-                Ok(Self::NormalMap(Box::new(map)))
-            }
+            "bumpmap" => BumpMap::load(object, textures),
+            "normalmap" => NormalMap::load(object, textures),
             "null" => object.finish().map(|()| Self::Null),
             "twosided" => {
                 let sides = twosided::TwoSided::load(object, textures)?;
@@ -114,6 +102,20 @@ impl Surface {
             }
             _ => Err(object.unsupported(&SUPPORTED)),
         }
+    }
+
+    /// A smooth interface, or nothing where that cannot be seen.
+    fn interface(
+        object: &Object,
+        textures: &mut TextureLoader,
+        surface: impl Fn(DielectricMaterial) -> Self,
+    ) -> Result<Self, SceneError> {
+        let material = DielectricMaterial::load(object, textures)?;
+        Ok(if material.is_invisible() {
+            Self::Null
+        } else {
+            surface(material)
+        })
     }
 
     /// Whether light gets through the surface.

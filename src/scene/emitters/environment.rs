@@ -15,13 +15,13 @@ use std::f32::consts::{FRAC_1_PI, PI};
 
 use glam::{DMat3, DMat4, Mat3, Vec2, Vec3};
 
-use super::LightSample;
+use super::{ConstantLight, Emitter, LightSample};
 use crate::sampling::{PiecewiseBilinear, SolidAnglePdf};
 use crate::scene::error::SceneError;
 use crate::scene::image_file::{self, ImageFile};
 use crate::scene::load::Loader;
 use crate::scene::xml::Object;
-use crate::spectrum::{BetweenTexels, Colour, EmissionImage, SpectrumArithmetic};
+use crate::spectrum::{BetweenTexels, Colour, EmissionImage, SpectralCurve, SpectrumArithmetic};
 
 /// The greatest radiance of a pixel: far above all that is real, and far from the overflow of `f32`.
 const MAX_RADIANCE: f32 = 1e30;
@@ -42,7 +42,8 @@ pub struct EnvironmentMap {
 }
 
 impl EnvironmentMap {
-    pub(super) fn load(object: &Object, loader: &Loader) -> Result<Self, SceneError> {
+    /// The surroundings; a constant light where the image has one colour.
+    pub(super) fn load(object: &Object, loader: &Loader) -> Result<Emitter, SceneError> {
         let image = image_file::load(object, loader.document)?.into_linear();
         let scale = object.float_or("scale", 1.0)?;
         let to_world = object.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
@@ -52,13 +53,16 @@ impl EnvironmentMap {
             let message = format!("`scale` is {scale}; it must be at least 0");
             return Err(object.parameter_error("scale", message));
         }
-        Self::new(
-            &image,
-            scale as f32,
-            compensates,
-            rotation(object, to_world)?,
-        )
-        .map_err(|message| object.parameter_error("filename", message))
+        let rotation = rotation(object, to_world)?;
+        let wrong = |message: String| object.parameter_error("filename", message);
+        let map = Self::new(&image, scale as f32, compensates, rotation).map_err(wrong)?;
+        Ok(match map.uniform() {
+            Some(rgb) => Emitter::Constant(ConstantLight {
+                radiance: SpectralCurve::rgb_emission(rgb)
+                    .map_err(|error| wrong(error.to_string()))?,
+            }),
+            None => Emitter::Environment(map),
+        })
     }
 
     fn new(
@@ -87,6 +91,13 @@ impl EnvironmentMap {
             rows,
             to_local,
         })
+    }
+
+    /// The radiance that arrives from everywhere, linear sRGB, if it is the same.
+    fn uniform(&self) -> Option<[f32; 3]> {
+        let texels = self.radiance.texels();
+        let (first, rest) = texels.split_first()?;
+        rest.iter().all(|rgb| rgb == first).then_some(*first)
     }
 
     /// Whether no light arrives from anywhere.

@@ -36,7 +36,7 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Emitter, Scen
         "projector" => Projector::load(object, loader).map(Emitter::Projector),
         "directional" => DirectionalLight::load(object).map(Emitter::Directional),
         "constant" => ConstantLight::load(object).map(Emitter::Constant),
-        "envmap" => EnvironmentMap::load(object, loader).map(Emitter::Environment),
+        "envmap" => EnvironmentMap::load(object, loader),
         _ => Err(object.unsupported(&SUPPORTED)),
     }
 }

@@ -54,6 +54,11 @@ impl Angle {
 }
 
 impl SpotLight {
+    /// Whether it throws an image.
+    pub fn is_textured(&self) -> bool {
+        self.texture.varies()
+    }
+
     pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Self, SceneError> {
         let intensity = spectrum_or(object, "intensity", Quantity::Emission, 1.0)?;
         let texture = loader.textures.reflectance(object, "texture", 1.0)?;

@@ -78,7 +78,7 @@ impl Texels {
     }
 
     /// The colour of all texels, if they have one.
-    pub fn uniform(&self) -> Option<[f32; 3]> {
+    fn uniform(&self) -> Option<[f32; 3]> {
         let first = self.rgb(0);
         let count = self.size.x as usize * self.size.y as usize;
         (1..count)
@@ -131,6 +131,11 @@ impl Bitmap {
         };
         object.finish()?;
         Ok(bitmap)
+    }
+
+    /// The colour of the whole image, linear sRGB or as in the file, if it has one.
+    pub fn uniform(&self) -> Option<[f32; 3]> {
+        self.texels.uniform()
     }
 
     /// Columns and rows of the image.

@@ -14,6 +14,7 @@ use super::{SpectrumTexture, TextureLoader};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::xml::Object;
+use crate::spectrum::SpectralCurve;
 
 /// Squares of two colours.
 #[derive(Clone, Debug)]
@@ -33,6 +34,17 @@ impl Checkerboard {
         };
         object.finish()?;
         Ok(board)
+    }
+
+    /// The colour of all squares, if they have one.
+    pub(super) fn uniform(&self) -> Option<&SpectralCurve> {
+        match &self.colours {
+            [
+                SpectrumTexture::Uniform(first),
+                SpectrumTexture::Uniform(second),
+            ] => (first == second).then_some(first),
+            _ => None,
+        }
     }
 
     /// The colour of the square that a point lies in.

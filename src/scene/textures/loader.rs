@@ -28,8 +28,8 @@ pub(in crate::scene) struct TextureLoader<'d> {
 /// What a texture turned out to be.
 enum Loaded {
     Pattern(Pattern),
-    /// An image of one colour, linear sRGB.
-    Uniform([f32; 3]),
+    /// The same everywhere.
+    Uniform(SpectralCurve),
 }
 
 impl<'d> TextureLoader<'d> {
@@ -57,7 +57,7 @@ impl<'d> TextureLoader<'d> {
             Some(property) => match stated(property, Quantity::Reflectance) {
                 Stated::Texture(texture) => match self.texture(&texture)? {
                     Loaded::Pattern(pattern) => return Ok(SpectrumTexture::Varying(pattern)),
-                    Loaded::Uniform(rgb) => SpectralCurve::rgb_reflectance(rgb),
+                    Loaded::Uniform(curve) => Ok(curve),
                 },
                 Stated::Curve(curve) => curve,
             },
@@ -87,7 +87,7 @@ impl<'d> TextureLoader<'d> {
             }
             Some(SpectrumProperty::Texture(texture)) => match self.texture(&texture)? {
                 Loaded::Pattern(pattern) => return Ok(FloatTexture::Varying(pattern)),
-                Loaded::Uniform(rgb) => luminance(rgb),
+                Loaded::Uniform(curve) => luminance(curve.rgb()),
             },
         };
         Ok(FloatTexture::Uniform(value))
@@ -106,15 +106,20 @@ impl<'d> TextureLoader<'d> {
         match object.plugin.as_str() {
             "bitmap" => {
                 let texels = self.texels(object)?;
-                let bitmap = Bitmap::load(object, texels.clone())?;
-                Ok(match texels.uniform() {
-                    Some(rgb) => Loaded::Uniform(rgb),
-                    None => Loaded::Pattern(Pattern::Bitmap(bitmap)),
-                })
+                let bitmap = Bitmap::load(object, texels)?;
+                match bitmap.uniform() {
+                    Some(rgb) => SpectralCurve::rgb_reflectance(rgb)
+                        .map(Loaded::Uniform)
+                        .map_err(|error| object.error(error.to_string())),
+                    None => Ok(Loaded::Pattern(Pattern::Bitmap(bitmap))),
+                }
             }
             "checkerboard" => {
                 let board = Checkerboard::load(object, self)?;
-                Ok(Loaded::Pattern(Pattern::Checkerboard(Box::new(board))))
+                Ok(match board.uniform() {
+                    Some(colour) => Loaded::Uniform(colour.clone()),
+                    None => Loaded::Pattern(Pattern::Checkerboard(Box::new(board))),
+                })
             }
             "mesh_attribute" => {
                 let attribute = AttributeTexture::load(object)?;

@@ -92,7 +92,13 @@ impl PrincipledMaterial {
     }
 
     pub(in crate::scene::bsdfs) fn needs_parameters(&self) -> bool {
+        can_be_positive(&self.anisotropic) || self.varies()
+    }
+
+    /// Whether it differs from point to point.
+    pub(in crate::scene::bsdfs) fn varies(&self) -> bool {
         let numbers = [
+            &self.anisotropic,
             &self.roughness,
             &self.metallic,
             &self.spec_trans,
@@ -103,9 +109,7 @@ impl PrincipledMaterial {
             &self.clearcoat,
             &self.clearcoat_gloss,
         ];
-        self.base_color.varies()
-            || can_be_positive(&self.anisotropic)
-            || numbers.iter().any(|number| number.varies())
+        self.base_color.varies() || numbers.iter().any(|number| number.varies())
     }
 
     pub(in crate::scene::bsdfs) fn at<C: Colour>(

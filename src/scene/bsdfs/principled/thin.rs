@@ -93,7 +93,13 @@ impl PrincipledThinMaterial {
     }
 
     pub(in crate::scene::bsdfs) fn needs_parameters(&self) -> bool {
+        !matches!(self.anisotropic, FloatTexture::Uniform(0.0)) || self.varies()
+    }
+
+    /// Whether it differs from point to point.
+    pub(in crate::scene::bsdfs) fn varies(&self) -> bool {
         let numbers = [
+            &self.anisotropic,
             &self.roughness,
             &self.spec_trans,
             &self.eta,
@@ -103,9 +109,7 @@ impl PrincipledThinMaterial {
             &self.flatness,
             &self.diff_trans,
         ];
-        self.base_color.varies()
-            || !matches!(self.anisotropic, FloatTexture::Uniform(0.0))
-            || numbers.iter().any(|number| number.varies())
+        self.base_color.varies() || numbers.iter().any(|number| number.varies())
     }
 
     pub(in crate::scene::bsdfs) fn at<C: Colour>(

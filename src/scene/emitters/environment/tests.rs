@@ -267,3 +267,22 @@ fn scene_files_name_the_image() {
         r#"<emitter type="envmap"><string name="filename" value="no/such.exr"/></emitter>"#;
     assert!(load_all(missing).unwrap_err().contains("no/such.exr"));
 }
+
+/// An image of one colour and the constant light that takes its place: every direction, by wavelength and in three channels.
+#[test]
+fn an_image_of_one_colour_is_a_constant_light() {
+    let colour = [0.75, 0.25, 1.5];
+    let map = EnvironmentMap::new(&image([[colour; 4]; 5]), 2.0, false, turned()).unwrap();
+    assert_eq!(map.uniform(), Some(colour.map(|channel| 2.0 * channel)));
+    assert_eq!(environment(2.0, false, turned()).uniform(), None);
+    let light = ConstantLight {
+        radiance: SpectralCurve::rgb_emission(map.uniform().unwrap()).unwrap(),
+    };
+    for direction in [Vec3::X, Vec3::NEG_Y, Vec3::new(0.6, 0.0, -0.8)] {
+        let rgb = map.radiance::<Rgb>(direction, &());
+        assert_close(&rgb.0, &light.radiance::<Rgb>(&()).0, 1e-5);
+        let at = Wavelengths::at(NM);
+        let spectral = map.radiance::<Spectral<4>>(direction, &at);
+        assert_close(&spectral.0, &light.radiance::<Spectral<4>>(&at).0, 1e-5);
+    }
+}

@@ -1,0 +1,121 @@
+//! What `cohort explain` says.
+
+mod cli_support;
+
+use cli_support::{Folder, SCENE, refused, with};
+
+/// What the program says of `scene`.
+fn explanation(scene: &str) -> String {
+    let folder = Folder::new();
+    folder.write("scene.xml", scene);
+    let output = folder.cohort(["explain", "scene.xml"]).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert!(output.stderr.is_empty(), "{output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The row of an effect, and those that continue it, with single spaces.
+fn row(said: &str, effect: &str) -> String {
+    let mut lines = said.lines().skip_while(|line| !line.starts_with(effect));
+    let first = lines.next().unwrap_or_else(|| panic!("{effect} in {said}"));
+    let rest = lines.take_while(|line| line.starts_with(' '));
+    let words: Vec<&str> = std::iter::once(first)
+        .chain(rest)
+        .flat_map(str::split_whitespace)
+        .collect();
+    words.join(" ")
+}
+
+#[test]
+fn a_matte_scene() {
+    let said = explanation(SCENE);
+    assert!(said.starts_with("scene.xml\nengine: matte, "), "{said}");
+    let (on, off): (Vec<&str>, Vec<&str>) = said
+        .lines()
+        .skip_while(|line| !line.starts_with("effect"))
+        .skip(1)
+        .partition(|line| line.contains(" on "));
+    assert_eq!(on.len(), 1, "{said}");
+    assert_eq!(
+        row(&said, "surroundings"),
+        "surroundings on emitter `constant` (scene.xml:9)"
+    );
+    assert_eq!(off.len(), 16, "{said}");
+    assert!(off.iter().all(|line| line.ends_with(" off")), "{said}");
+}
+
+#[test]
+fn effects_name_their_objects() {
+    let glass = r#"<bsdf type="dielectric" id="pane"/></shape>
+<shape type="sphere"><bsdf type="roughconductor"/>"#;
+    let said = explanation(&with(SCENE, r#"<bsdf type="diffuse"/>"#, glass));
+    assert!(said.contains("engine: general, "), "{said}");
+    let pane = "bsdf `dielectric` called `pane` (scene.xml:8)";
+    assert_eq!(row(&said, "glass"), format!("glass on {pane}"));
+    assert_eq!(
+        row(&said, "gloss"),
+        "gloss on bsdf `roughconductor` (scene.xml:9)"
+    );
+    assert_eq!(row(&said, "mirrors"), "mirrors off");
+    assert!(said.contains(&format!("\n  {pane}\n")), "{said}");
+}
+
+#[test]
+fn definitions_decide() {
+    let alpha = r#"<bsdf type="roughconductor"><float name="alpha" value="$alpha"/></bsdf>"#;
+    let scene = with(SCENE, r#"<bsdf type="diffuse"/>"#, alpha);
+    let folder = Folder::new();
+    folder.write("scene.xml", scene);
+    let explain = |definition: &str| {
+        let output = folder
+            .cohort(["explain", "scene.xml", "-D", definition])
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert_eq!(row(&explain("alpha=0"), "gloss"), "gloss off");
+    assert!(row(&explain("alpha=0"), "mirrors").starts_with("mirrors on "));
+    assert!(row(&explain("alpha=0.1"), "gloss").starts_with("gloss on "));
+}
+
+#[test]
+fn long_lists_are_cut() {
+    let lights = r#"<emitter type="point"/>"#.repeat(20);
+    let said = explanation(&with(SCENE, r#"<emitter type="constant"/>"#, &lights));
+    let lights = row(&said, "many lights");
+    assert_eq!(lights.matches("emitter `point` (scene.xml:9)").count(), 8);
+    assert!(lights.ends_with("and 12 more"), "{lights}");
+}
+
+#[test]
+fn the_built_in_scene() {
+    let folder = Folder::new();
+    let output = folder.cohort(["explain"]).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.starts_with("built-in cornell-knot.xml\nengine: matte, "),
+        "{said}"
+    );
+}
+
+#[test]
+fn errors_are_those_of_loading() {
+    let folder = Folder::new();
+    folder.write("scene.xml", with(SCENE, "diffuse", "difuse"));
+    let said = refused(&folder.cohort(["explain", "scene.xml"]).output().unwrap());
+    assert!(
+        said.contains("scene.xml:8:22: the bsdf `difuse` is not supported"),
+        "{said}"
+    );
+    let said = refused(&folder.cohort(["explain", "nowhere.xml"]).output().unwrap());
+    assert!(said.contains("nowhere.xml"), "{said}");
+    let said = refused(
+        &folder
+            .cohort(["explain", "scene.xml", "--size", "3x3"])
+            .output()
+            .unwrap(),
+    );
+    assert!(said.contains("--size"), "{said}");
+}
