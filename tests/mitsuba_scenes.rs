@@ -1,13 +1,13 @@
 //! Little scenes against Mitsuba 3: everything that the paper's scenes do not use.
 //!
-//! The scenes are `tests/scenes/*.xml`; their `$name`s make several cases of each.
+//! The scenes are `tests/scenes/*.xml` and those of the gallery, `scenes/gallery/*.xml`; their `$name`s make several cases of each.
 
 mod support;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use cohort::render::{ColourMode, Settings};
+use cohort::render::{ColourMode, Settings, WavelengthCount};
 use cohort::scene::{LoadOptions, ReconstructionFilter, Scene};
 use cohort::transport::DirectLight;
 
@@ -26,8 +26,34 @@ const FILTERED_REFERENCE: (u32, u32) = (16, 128);
 /// Side of the blocks in pixels.
 const BLOCK: usize = 4;
 
-/// A scene of `tests/scenes` with values for its `$name`s.
+/// What scenes of `tests/scenes` read.
+const INPUTS: [&str; 9] = [
+    "fragments/floor.xml",
+    "fragments/row.xml",
+    "octahedron.obj",
+    "tent.obj",
+    "sky.pfm",
+    "coloured.ply",
+    "colours.png",
+    "heights.png",
+    "normals.png",
+];
+
+/// What scenes of the gallery read.
+const GALLERY_INPUTS: [&str; 7] = [
+    "camera.xml",
+    "stage.xml",
+    "lamp.xml",
+    "tiles.png",
+    "heights.png",
+    "normals.png",
+    "sky.pfm",
+];
+
+/// A scene of a folder with values for its `$name`s.
 struct Case {
+    folder: &'static str,
+    inputs: &'static [&'static str],
     scene: &'static str,
     definitions: Vec<(String, String)>,
     colour: ColourMode,
@@ -36,12 +62,23 @@ struct Case {
 impl Case {
     fn new(scene: &'static str, definitions: &[(&str, &str)]) -> Self {
         Self {
+            folder: "tests/scenes",
+            inputs: &INPUTS,
             scene,
             definitions: definitions
                 .iter()
                 .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
                 .collect(),
             colour: ColourMode::Rgb,
+        }
+    }
+
+    /// A scene of the gallery, small.
+    fn of_gallery(scene: &'static str) -> Self {
+        Self {
+            folder: "scenes/gallery",
+            inputs: &GALLERY_INPUTS,
+            ..Self::new(scene, &[("size", "48"), ("depth", "5")])
         }
     }
 
@@ -53,7 +90,11 @@ impl Case {
     }
 
     fn path(&self) -> PathBuf {
-        files::of_project(&format!("tests/scenes/{}.xml", self.scene))
+        self.file(&format!("{}.xml", self.scene))
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        files::of_project(&format!("{}/{name}", self.folder))
     }
 
     fn load(&self) -> Arc<Scene> {
@@ -65,22 +106,9 @@ impl Case {
         Arc::new(scene.unwrap_or_else(|error| panic!("{error}")))
     }
 
-    /// Everything that scenes of this folder read.
+    /// Everything that scenes of its folder read.
     fn inputs(&self) -> Vec<PathBuf> {
-        let names = [
-            "fragments/floor.xml",
-            "fragments/row.xml",
-            "octahedron.obj",
-            "tent.obj",
-            "sky.pfm",
-            "coloured.ply",
-            "colours.png",
-            "heights.png",
-            "normals.png",
-        ];
-        names
-            .map(|name| files::of_project(&format!("tests/scenes/{name}")))
-            .to_vec()
+        self.inputs.iter().map(|name| self.file(name)).collect()
     }
 
     fn settings(&self) -> Settings {
@@ -204,6 +232,77 @@ cases! {
 
     colours: "colours";
     colours_in_wavelengths: "colours" in_wavelengths;
+}
+
+/// The scenes of the gallery, each by the colours in which its effect shows.
+mod gallery {
+    use super::Case;
+
+    macro_rules! scenes {
+        ($($name:ident: $scene:literal $($wavelengths:ident)?;)*) => {$(
+            #[test]
+            fn $name() {
+                Case::of_gallery($scene)$(.$wavelengths())?.check();
+            }
+        )*};
+    }
+
+    scenes! {
+        matte: "matte";
+        mirror: "mirror" in_wavelengths;
+        glass: "glass";
+        rough_glass: "rough-glass";
+        rough_metal: "rough-metal" in_wavelengths;
+        plastic: "plastic";
+        principled: "principled";
+        textures: "textures" in_wavelengths;
+        bump: "bump";
+        mask: "mask";
+        envmap: "envmap" in_wavelengths;
+        spot: "spot";
+        directional: "directional";
+        projector: "projector" in_wavelengths;
+        many_lights: "many-lights";
+        thin_lens: "thin-lens";
+        orthographic: "orthographic";
+    }
+}
+
+/// Light that is sought and light that is met by chance make the same image of mixed materials. Mitsuba's `blendbsdf` is no reference: what
+/// it samples has the density of one of the two materials, and what it evaluates that of the mixture.
+#[test]
+fn blends_are_the_same_however_light_is_found() {
+    let case = Case::of_gallery("blend");
+    let scene = case.load();
+    let by_chance = Settings {
+        direct_light: DirectLight::Off,
+        ..case.settings()
+    };
+    let found = replicates(&scene, by_chance, 0..24, 160);
+    let sought = replicates(&scene, case.settings(), 0..OURS.0, 2 * OURS.1);
+    Comparison::new("blend: sought and found by chance", &sought, &found, BLOCK).assert();
+}
+
+/// Mitsuba knows no dispersion. But paths that carry a single wavelength each are refracted by its index alone, and those that
+/// carry four give the same image.
+#[test]
+fn dispersion_is_that_of_single_wavelengths() {
+    let case = Case::of_gallery("dispersion");
+    let scene = case.load();
+    let images = |count| {
+        let settings = Settings {
+            colour: ColourMode::Spectral(count),
+            ..Settings::default()
+        };
+        replicates(&scene, settings, 0..OURS.0, 8 * OURS.1)
+    };
+    Comparison::new(
+        "dispersion: one wavelength and four",
+        &images(WavelengthCount::Four),
+        &images(WavelengthCount::One),
+        BLOCK,
+    )
+    .assert();
 }
 
 /// Lights whose vertex normals are not those of their faces: Mitsuba converts densities by the wrong one of the two
