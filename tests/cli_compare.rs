@@ -102,10 +102,11 @@ fn a_comparison_ends_in_a_report() {
             error.bounds.is_some() && (1e-3..1.0).contains(&error.estimate),
             "{error:?}"
         );
-        let first = competitor.snapshots[0].errors.relative_mse.estimate;
+        // From 4 samples on: with fewer, rare bright samples in dark pixels decide about a relative error.
+        let early = competitor.snapshots[2].errors.relative_mse.estimate;
         assert!(
-            (8.0..128.0).contains(&(first / error.estimate)),
-            "{first} {error:?}"
+            (2.0..32.0).contains(&(early / error.estimate)),
+            "{early} {error:?}"
         );
         assert!(last.errors.flip.is_some());
         // The variance between repetitions is the same error, measured without any reference.

@@ -98,6 +98,23 @@ fn assert_near(value: f64, expected: f64) {
     );
 }
 
+/// A convex body under a constant light sends back what its parts reflect, in their shares.
+#[test]
+fn a_blend_reflects_the_shares_of_its_parts() {
+    let scene = scene(&format!(
+        r#"<integrator type="path"/>
+        <sensor type="perspective"><float name="fov" value="5"/>
+            <transform name="to_world"><lookat origin="0 0 20" target="0 0 0" up="0 1 0"/></transform>{BOX_FILM}</sensor>
+        <shape type="sphere"><float name="radius" value="2"/><bsdf type="blendbsdf"><float name="weight" value="0.25"/>
+            <bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf><bsdf type="conductor"/></bsdf></shape>
+        <emitter type="constant"><rgb name="radiance" value="1"/></emitter>"#
+    ));
+    let ours = replicates(&scene, settings(SamplerKind::Independent), 0..64, 256);
+    let [mean, ..] = ours.means();
+    let expected = 0.75 * 0.5 + 0.25;
+    assert!((mean.mean / expected - 1.0).abs() < 3e-3, "{}", mean.mean);
+}
+
 /// rho / pi E cos
 #[test]
 fn the_sun_lights_a_plane_by_the_cosine() {

@@ -268,8 +268,9 @@ mod gallery {
     }
 }
 
-/// Light that is sought and light that is met by chance make the same image of mixed materials. Mitsuba's `blendbsdf` is no reference: what
-/// it samples has the density of one of the two materials, and what it evaluates that of the mixture.
+/// Light that is sought and light that is met by chance make the same image of mixed materials. Mitsuba's `blendbsdf` is no reference: under
+/// a constant light, a sphere half mirror and half diffuse with reflectance 0.5 sends back 0.693 of it in 3.9.1, and 0.75 in truth
+/// (`lights_and_lenses.rs`).
 #[test]
 fn blends_are_the_same_however_light_is_found() {
     let case = Case::of_gallery("blend");
