@@ -149,6 +149,11 @@ fn values_out_of_range() {
         ),
         (
             emitter,
+            r#"<emitter type="constant"><texture type="checkerboard" name="radiance"/></emitter>"#,
+            "`radiance` of the emitter `constant` is the same everywhere: it can be a colour or a spectrum, not a texture",
+        ),
+        (
+            emitter,
             r#"<emitter type="constant"><spectrum name="radiance" value="400:1, 500:-2"/></emitter>"#,
             "`radiance`: emission -2",
         ),

@@ -27,7 +27,9 @@ pub(super) fn spectrum(
         return Ok(None);
     };
     match stated(property, quantity) {
-        Stated::Texture(texture) => Err(texture.unsupported(&[])),
+        Stated::Texture(texture) => Err(texture.error(format!(
+            "`{name}` of the {object} is the same everywhere: it can be a colour or a spectrum, not a texture"
+        ))),
         Stated::Curve(curve) => curve
             .map(Some)
             .map_err(|error| object.parameter_error(name, format!("`{name}`: {error}"))),
