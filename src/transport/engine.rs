@@ -8,7 +8,7 @@ use super::settings::TransportSettings;
 use crate::embree::Version;
 use crate::film::FilterSampler;
 use crate::sampling::StreamKey;
-use crate::scene::{CameraView, Emitter, LightChoice, Material, Parallelogram, Scene};
+use crate::scene::{CameraView, Emitter, LightChoice, Parallelogram, Scene};
 use crate::walk::Strategy;
 
 /// A scene ready to be traced, shared by all threads.
@@ -53,7 +53,7 @@ impl Engine {
         Self {
             camera: scene.camera.view(scene.film.size),
             filter: FilterSampler::new(&scene.film),
-            is_matte: scene.materials.iter().all(Material::is_matte),
+            is_matte: scene.is_matte(),
             surroundings: scene.emitters.iter().position(Emitter::surrounds),
             light_choice: LightChoice::new(&scene.emitters, &scene.shapes),
             emission: EmissionTable::new(&scene.emitters),
