@@ -60,7 +60,7 @@ impl FilterSampler {
     }
 
     /// Draws a position for the pixel in column `x` and row `y` of the crop window from uniform numbers in [0, 1).
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, x: u32, y: u32, u: [f32; 2]) -> FilterSample {
         let column = self.columns.profile(x).sample(u[0]);
         let row = self.rows.profile(y).sample(u[1]);
@@ -95,7 +95,7 @@ impl Axis {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn profile(&self, pixel: u32) -> &Profile {
         let before = pixel.min(self.reach);
         let after = (self.length - 1 - pixel).min(self.reach);
@@ -150,8 +150,20 @@ impl Profile {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, u: f32) -> AxisSample {
+        if self.filter == ReconstructionFilter::Box {
+            return AxisSample {
+                offset: self.start + u * self.bin_width,
+                weight: 1.0,
+            };
+        }
+        self.sample_bins(u)
+    }
+
+    /// The same by the piecewise constant density.
+    #[inline]
+    fn sample_bins(&self, u: f32) -> AxisSample {
         let last = self.cumulative.len() - 1;
         let bin = self.cumulative.partition_point(|&c| c <= u).min(last);
         let below = if bin == 0 {
@@ -162,12 +174,6 @@ impl Profile {
         let probability = self.cumulative[bin] - below;
         let within = ((u - below) / probability).clamp(0.0, 1.0);
         let offset = self.start + (bin as f32 + within) * self.bin_width;
-        if self.filter == ReconstructionFilter::Box {
-            return AxisSample {
-                offset,
-                weight: 1.0,
-            };
-        }
         let density = probability / self.bin_width;
         let value = self.filter.profile(f64::from(offset)) as f32;
         AxisSample {

@@ -90,7 +90,7 @@ impl<const N: usize> Colour for Spectral<N> {
     type Spectrum = Spectrum<N>;
     const RANDOM_NUMBERS: usize = 1;
 
-    #[inline]
+    #[inline(always)]
     fn sample_wavelengths(u: f32) -> Wavelengths<N> {
         Wavelengths::sample(u)
     }
@@ -118,7 +118,7 @@ impl<const N: usize> Colour for Spectral<N> {
         table.evaluate(entry, wavelengths)
     }
 
-    #[inline]
+    #[inline(always)]
     fn to_rgb(radiance: Spectrum<N>, wavelengths: &Wavelengths<N>) -> [f32; 3] {
         let mut rgb = [0.0; 3];
         for i in 0..N {

@@ -169,7 +169,7 @@ impl RegularTable {
     #[inline(always)]
     pub(super) fn evaluate<const N: usize>(&self, nm: &[f32; N]) -> [f32; N] {
         let last = (self.intervals.len() - 1) as f32;
-        let (mut entries, mut fractions, mut inside) = ([0_u32; N], [0.0; N], [0.0; N]);
+        let (mut entries, mut fractions, mut inside) = ([0_u32; N], [0.0; N], [0_u32; N]);
         for i in 0..N {
             // Without a jump: random wavelengths leave the range too unpredictably for one.
             let position = ((nm[i] - self.first_nm) * self.entries_per_nm).clamp(0.0, last + 1.0);
@@ -177,12 +177,13 @@ impl RegularTable {
             entries[i] = place.entry;
             fractions[i] = place.fraction;
             let is_inside = (nm[i] >= self.first_nm) & (nm[i] <= self.last_nm);
-            inside[i] = if is_inside { 1.0 } else { 0.0 };
+            inside[i] = u32::from(is_inside).wrapping_neg();
         }
         let mut values = [0.0; N];
         for i in 0..N {
             let Interval { value, difference } = self.intervals[entries[i] as usize];
-            values[i] = inside[i] * (value + fractions[i] * difference);
+            let inside_value = value + fractions[i] * difference;
+            values[i] = f32::from_bits(inside_value.to_bits() & inside[i]);
         }
         values
     }

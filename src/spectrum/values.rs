@@ -122,12 +122,13 @@ impl<const N: usize> SpectrumArithmetic for Spectrum<N> {
 
     #[inline]
     fn is_black(self) -> bool {
-        self.0.into_iter().all(|v| v == 0.0)
+        // Without jumps, as below: which component decides cannot be foreseen.
+        self.0.into_iter().fold(true, |all, v| all & (v == 0.0))
     }
 
     #[inline]
     fn is_finite(self) -> bool {
-        self.0.into_iter().all(f32::is_finite)
+        self.0.into_iter().fold(true, |all, v| all & v.is_finite())
     }
 }
 

@@ -55,10 +55,10 @@ pub(super) fn start<C: Colour, V: Variant>(
         }
         let [film_u, film_v, wavelength_u] = &numbers;
         let [lens_u, lens_v] = &lens_numbers;
-        let wavelengths = wavelength_u[..chunk.len()].iter();
-        paths
-            .wavelengths
-            .extend(wavelengths.map(|&u| C::sample_wavelengths(u)));
+        // Not by `extend`: the closure would be compiled for any processor.
+        for &u in &wavelength_u[..chunk.len()] {
+            paths.wavelengths.push(C::sample_wavelengths(u));
+        }
         (pixel, sample) = (first_pixel, first_sample);
         for (lane, path) in chunk.enumerate() {
             let (x, y) = tile.position(pixel as usize);

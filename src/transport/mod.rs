@@ -1,9 +1,9 @@
 //! The engine: batches of path states, and the stages that move them one bounce on.
 //!
 //! ```text
-//!  camera -> intersect -> emission -> direct -> walk -> scatter -+
-//!                ^                                               |
-//!                +-----------------------------------------------+
+//!  camera -> intersect -> emission -> direct -> walk -> scatter -> ... -> splat
+//!                ^                                         |
+//!                +-----------------------------------------+
 //! ```
 //!
 //! A batch holds all camera paths of one tile in one pass. Path states are structures of arrays: [`Segments`] are rays
@@ -28,6 +28,7 @@ mod pipeline;
 mod recorded_rays;
 mod scatter;
 mod settings;
+mod splat;
 mod stages;
 mod statistics;
 mod surface;

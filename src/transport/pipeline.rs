@@ -7,12 +7,12 @@ use super::settings::DirectLight;
 use super::stages::{Stage, Stopwatch};
 use super::statistics::TraceStatistics;
 use super::variant::Variant;
-use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_stage};
+use super::{camera, direct, emission, hidden_emitters, intersect, scatter, splat, walk_stage};
 use crate::embree::Coherence;
-use crate::film::{Accumulator, FilmTile, PixelStatistics, TilePixels};
-use crate::sampling::{Sampler, SamplerKind};
-use crate::spectrum::{Colour, SpectrumArithmetic};
-use crate::walk::{Offspring, Scope};
+use crate::film::FilmTile;
+use crate::sampling::Sampler;
+use crate::spectrum::Colour;
+use crate::walk::Offspring;
 
 /// After so many bounces a batch is cut off and the cut is reported: only light that never dies gets here.
 const MAX_BOUNCES: u32 = 1 << 16;
@@ -61,7 +61,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
         );
         stopwatch.lap(Stage::Camera, &mut self.statistics.stages);
         self.follow(engine, job, &mut sampler, &mut stopwatch);
-        self.expose(engine, job, tile);
+        splat::expose(engine, job, &self.paths, tile, &mut self.statistics.dropped);
         stopwatch.lap(Stage::Splat, &mut self.statistics.stages);
         self.statistics.camera_paths += self.paths.radiance.len() as u64;
     }
@@ -159,61 +159,5 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             );
             stopwatch.lap(Stage::Scatter, &mut self.statistics.stages);
         }
-    }
-
-    /// Adds the finished camera paths to their pixels.
-    fn expose(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
-        match &mut tile.pixels {
-            TilePixels::Single(pixels) => self.expose_pixels(engine, job, pixels),
-            TilePixels::Double(pixels) => self.expose_pixels(engine, job, pixels),
-            TilePixels::Compensated(pixels) => self.expose_pixels(engine, job, pixels),
-        }
-    }
-
-    fn expose_pixels<A: Accumulator>(
-        &mut self,
-        engine: &Engine,
-        job: &TileJob,
-        pixels: &mut [PixelStatistics<A>],
-    ) {
-        let samples = job.samples as usize;
-        // Paths of one population, or of one sequence, are not independent of each other: together they are one unit.
-        let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile)
-            || engine.settings.sampler != SamplerKind::Independent;
-        for (index, pixel) in pixels.iter_mut().enumerate() {
-            let mut sum = [A::default(); 3];
-            for path in index * samples..(index + 1) * samples {
-                let rgb = self.sample(path);
-                if joint {
-                    for (sum, value) in sum.iter_mut().zip(rgb) {
-                        sum.add(value);
-                    }
-                } else {
-                    pixel.add_unit(1, rgb);
-                }
-            }
-            if joint {
-                pixel.add_unit(job.samples, sum.map(A::total));
-            }
-        }
-    }
-
-    /// The colour of a finished camera path; black, and counted, where it is no radiance.
-    fn sample(&mut self, path: usize) -> [f64; 3] {
-        let radiance = self.paths.radiance[path];
-        let dropped = &mut self.statistics.dropped;
-        let components = radiance.components();
-        if components.iter().any(|value| value.is_nan()) {
-            dropped.nan += 1;
-        } else if !radiance.is_finite() {
-            dropped.infinite += 1;
-        } else if components.iter().any(|&value| value < 0.0) {
-            dropped.negative += 1;
-        } else {
-            let weight = f64::from(self.paths.filter_weight[path]);
-            return C::to_rgb(radiance, &self.paths.wavelengths[path])
-                .map(|v| f64::from(v) * weight);
-        }
-        [0.0; 3]
     }
 }

@@ -66,6 +66,17 @@ impl DroppedSamples {
     pub fn total(&self) -> u64 {
         self.nan + self.infinite + self.negative + self.endless
     }
+
+    /// Counts a sample with these components, at least one of which is no radiance.
+    pub(super) fn count(&mut self, components: &[f32]) {
+        if components.iter().any(|value| value.is_nan()) {
+            self.nan += 1;
+        } else if components.iter().any(|value| value.is_infinite()) {
+            self.infinite += 1;
+        } else {
+            self.negative += 1;
+        }
+    }
 }
 
 impl AddAssign for DroppedSamples {

@@ -36,17 +36,23 @@ impl ExpectedCount {
     /// Never zero: which particles have no children at all is not for a strategy to say (see [`Strategy`]).
     ///
     /// [`Strategy`]: super::Strategy
-    #[inline]
+    #[inline(always)]
     pub fn positive(nu: f32) -> Self {
-        // The conversion saturates, and takes NaN to 0: every f32 ends inside the bounds.
-        let units = (nu * ONE as f32) as u64;
-        Self(units.clamp(Self::SMALLEST.0, Self::LARGEST.0))
+        // Conversions to integers by `as` look after numbers out of range and do not vectorise. Here none is out of range (the
+        // comparisons take NaN to the least), and adding 2^52 leaves the nearest integer in the last bits.
+        const INTEGERS: f64 = (1_u64 << 52) as f64;
+        let units = f64::from(nu) * ONE as f64;
+        let units = if units > 1.0 { units } else { 1.0 };
+        let largest = Self::LARGEST.0 as f64;
+        let units = if units < largest { units } else { largest };
+        Self((units + INTEGERS).to_bits() - INTEGERS.to_bits())
     }
 
     /// What a child's throughput is multiplied by: 1 / nu, finite for every positive nu.
     #[inline]
     pub fn child_weight(self) -> f32 {
-        (ONE as f64 / self.0 as f64) as f32
+        // Signed integers become floating point by one instruction, and no count has that many digits.
+        (ONE as f64 / self.0 as i64 as f64) as f32
     }
 
     /// The children that are certain: floor(nu).

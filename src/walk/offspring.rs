@@ -1,5 +1,7 @@
 //! The children that a strategy has given to a population.
 
+use multiversion::multiversion;
+
 use super::{ExpectedCount, Population, Rounding, WalkReport};
 use crate::room::{make_room, with_room};
 use crate::sampling::RandomStream;
@@ -71,23 +73,10 @@ impl Offspring {
     /// Turns the wishes into expected counts that keep the estimator unbiased whatever was wished:
     /// zero exactly for the particles that do not matter, and for those with impossible numbers, which are reported.
     pub(super) fn settle(&mut self, population: &Population) -> WalkReport {
-        let mut all_sound = true;
         make_room(&mut self.expected, population.len());
-        self.expected.extend(
-            population
-                .particles()
-                .zip(&self.wishes)
-                .map(|(particle, &wish)| {
-                    let sound = particle.is_sound();
-                    all_sound &= sound;
-                    if sound && particle.matters() {
-                        ExpectedCount::positive(wish)
-                    } else {
-                        ExpectedCount::ZERO
-                    }
-                }),
-        );
-        if all_sound {
+        self.expected
+            .resize(population.len(), ExpectedCount::default());
+        if settle(population, &self.wishes, &mut self.expected) {
             WalkReport::default()
         } else {
             WalkReport::on(population)
@@ -105,6 +94,28 @@ impl Offspring {
         make_room(&mut self.children, children.whole() as usize + 1);
         rounding.draw(&self.expected, population, random, &mut self.children);
     }
+}
+
+/// Writes what `wishes` come to for the particles of `population` into `counts`, all of one length. Returns whether all
+/// particles are sound.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn settle(population: &Population, wishes: &[f32], counts: &mut [ExpectedCount]) -> bool {
+    let mut all_sound = true;
+    let particles = population.particles().zip(wishes);
+    for ((particle, &wish), count) in particles.zip(counts) {
+        let sound = particle.is_sound();
+        all_sound &= sound;
+        let wished = ExpectedCount::positive(wish);
+        *count = if sound & particle.matters() {
+            wished
+        } else {
+            ExpectedCount::ZERO
+        };
+    }
+    all_sound
 }
 
 #[cfg(test)]

@@ -71,17 +71,17 @@ pub(super) struct Particle {
 
 impl Particle {
     /// Whether the numbers can be those of a particle: finite and not negative, but for a mirror's shininess.
-    #[inline]
+    #[inline(always)]
     pub fn is_sound(self) -> bool {
-        let finite = 0.0..=f32::MAX;
-        finite.contains(&self.importance) && finite.contains(&self.albedo) && self.shininess >= 0.0
+        let finite = |number: f32| (number >= 0.0) & (number <= f32::MAX);
+        finite(self.importance) & finite(self.albedo) & (self.shininess >= 0.0)
     }
 
     /// Whether anything that the particle still finds can reach its pixel. The factors are asked one by one:
     /// their product can vanish although neither does.
-    #[inline]
+    #[inline(always)]
     pub fn matters(self) -> bool {
-        self.importance > 0.0 && self.albedo > 0.0
+        (self.importance > 0.0) & (self.albedo > 0.0)
     }
 }
 

@@ -73,7 +73,7 @@ impl CameraView {
 
     /// The ray through `raster`, in pixels from the upper left corner of the whole film (not of its crop window), that
     /// passes the lens, if there is one, at the point which the uniform numbers `lens` in [0, 1) stand for.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, raster: Vec2, lens: [f32; 2]) -> CameraRay {
         match self {
             Self::Pinhole(view) => view.ray(raster),

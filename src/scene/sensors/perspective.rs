@@ -116,13 +116,13 @@ impl PinholeView {
     }
 
     /// Where the ray through `raster` is at depth 1, relative to the pinhole, in world space.
-    #[inline]
+    #[inline(always)]
     pub(super) fn at_unit_depth(&self, raster: Vec2) -> Vec3 {
         self.corner + self.per_column * raster.x + self.per_row * raster.y
     }
 
     /// The ray through `raster`, in pixels from the upper left corner of the whole film (not of its crop window).
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, raster: Vec2) -> CameraRay {
         let at_unit_depth = self.at_unit_depth(raster);
         let length = at_unit_depth.length();

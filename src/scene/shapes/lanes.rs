@@ -10,8 +10,12 @@ use crate::lanes::VectorLanes;
 #[derive(Clone, Debug)]
 pub(crate) struct CornerLanes<const N: usize> {
     positions: [VectorLanes<N>; 3],
-    /// Zero where the mesh has none.
+    /// Those of lanes that are not smooth mean nothing.
     normals: [VectorLanes<N>; 3],
+    /// 1 where the mesh has vertex normals, otherwise 0.
+    smoothness: [f32; N],
+    /// Whether any mesh has.
+    any_is_smooth: bool,
     /// 1 where the counterclockwise side of the triangle is the outer one, otherwise -1.
     orientation: [f32; N],
 }
@@ -29,21 +33,32 @@ impl<const N: usize> Default for CornerLanes<N> {
         Self {
             positions: [VectorLanes::default(); 3],
             normals: [VectorLanes::default(); 3],
+            smoothness: [0.0; N],
+            any_is_smooth: false,
             orientation: [1.0; N],
         }
     }
 }
 
 impl<const N: usize> CornerLanes<N> {
-    /// Puts a triangle into its lane: positions, unit normals (zero without vertex normals), and whether its clockwise side is
-    /// the outer one.
+    /// Puts a triangle without vertex normals into its lane: its positions, and whether its clockwise side is the outer one.
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, positions: [Vec3; 3], normals: [Vec3; 3], flipped: bool) {
-        for corner in 0..3 {
-            self.positions[corner].put(lane, positions[corner]);
-            self.normals[corner].put(lane, normals[corner]);
+    pub fn set(&mut self, lane: usize, positions: [Vec3; 3], flipped: bool) {
+        for (lanes, position) in self.positions.iter_mut().zip(positions) {
+            lanes.put(lane, position);
         }
         self.orientation[lane] = if flipped { -1.0 } else { 1.0 };
+        self.smoothness[lane] = 0.0;
+    }
+
+    /// Gives the triangle in a lane unit vertex normals.
+    #[inline(always)]
+    pub fn set_normals(&mut self, lane: usize, normals: [Vec3; 3]) {
+        for (lanes, normal) in self.normals.iter_mut().zip(normals) {
+            lanes.put(lane, normal);
+        }
+        self.smoothness[lane] = 1.0;
+        self.any_is_smooth = true;
     }
 
     /// The points at barycentric coordinates `u` of the second and `v` of the third vertices. Lanes that were not set have
@@ -57,13 +72,26 @@ impl<const N: usize> CornerLanes<N> {
             let [a, b, c] = [0, 1, 2].map(|corner| self.positions[corner].get(i));
             let (ab, ac) = (b - a, c - a);
             let orientation = self.orientation[i];
-            let geometric = unit_or(ab.cross(ac), Vec3::ZERO);
-            let [na, nb, nc] = [0, 1, 2].map(|corner| self.normals[corner].get(i));
-            // Opposite normals can cancel out; then the true surface decides.
-            let shading = unit_or(na + u[i] * (nb - na) + v[i] * (nc - na), geometric);
+            let geometric = orientation * unit_or(ab.cross(ac), Vec3::ZERO);
             points.position.put(i, a + u[i] * ab + v[i] * ac);
-            points.geometric_normal.put(i, orientation * geometric);
-            points.shading_normal.put(i, orientation * shading);
+            points.geometric_normal.put(i, geometric);
+            points.shading_normal.put(i, geometric);
+        }
+        if self.any_is_smooth {
+            self.interpolate_normals(u, v, points);
+        }
+    }
+
+    /// The same of the shading normals of smooth meshes.
+    #[inline(always)]
+    fn interpolate_normals(&self, u: &[f32; N], v: &[f32; N], points: &mut SurfaceLanes<N>) {
+        for i in 0..N {
+            let [na, nb, nc] = [0, 1, 2].map(|corner| self.normals[corner].get(i));
+            let interpolated = na + u[i] * (nb - na) + v[i] * (nc - na);
+            // Opposite normals can cancel out; then the true surface decides.
+            let signed = self.smoothness[i] * self.orientation[i] * interpolated;
+            let shading = unit_or(signed, points.geometric_normal.get(i));
+            points.shading_normal.put(i, shading);
         }
     }
 }

@@ -277,13 +277,12 @@ impl Triangles {
         lanes: &mut CornerLanes<N>,
         lane: usize,
     ) {
-        let corners = corners.map(|corner| self.vertices[corner as usize]);
-        lanes.set(
-            lane,
-            corners.map(|corner| corner.position.into()),
-            corners.map(|corner| corner.normal.into()),
-            self.attributes.flip_normals,
-        );
+        let corners = corners.map(|corner| &self.vertices[corner as usize]);
+        let positions = corners.map(|corner| corner.position.into());
+        lanes.set(lane, positions, self.attributes.flip_normals);
+        if self.attributes.is_smooth {
+            lanes.set_normals(lane, corners.map(|corner| corner.normal.into()));
+        }
     }
 
     pub(super) fn area(&self) -> f32 {

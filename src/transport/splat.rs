@@ -1,0 +1,84 @@
+//! Stage: finished camera paths are added to their pixels.
+
+use multiversion::multiversion;
+
+use super::batch::CameraPaths;
+use super::engine::{Engine, TileJob};
+use super::statistics::DroppedSamples;
+use crate::film::{Accumulator, FilmTile, PixelStatistics, TilePixels};
+use crate::sampling::SamplerKind;
+use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::walk::Scope;
+
+/// Adds every path to its pixel of the tile; those that carry no radiance count as black there, and in `dropped`.
+pub(super) fn expose<C: Colour>(
+    engine: &Engine,
+    job: &TileJob,
+    paths: &CameraPaths<C>,
+    tile: &mut FilmTile,
+    dropped: &mut DroppedSamples,
+) {
+    // Paths of one population, or of one sequence, are not independent of each other: together they are one unit.
+    let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile)
+        || engine.settings.sampler != SamplerKind::Independent;
+    match &mut tile.pixels {
+        TilePixels::Single(pixels) => expose_pixels(paths, joint, pixels, job.samples, dropped),
+        TilePixels::Double(pixels) => expose_pixels(paths, joint, pixels, job.samples, dropped),
+        TilePixels::Compensated(pixels) => {
+            expose_pixels(paths, joint, pixels, job.samples, dropped);
+        }
+    }
+}
+
+/// Adds `samples` paths to each pixel: as one unit where they are `joint`.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn expose_pixels<C: Colour, A: Accumulator>(
+    paths: &CameraPaths<C>,
+    joint: bool,
+    pixels: &mut [PixelStatistics<A>],
+    samples: u32,
+    dropped: &mut DroppedSamples,
+) {
+    let mut path = 0;
+    for pixel in pixels {
+        // A copy can stay in registers.
+        let mut statistics = *pixel;
+        let mut sum = [A::default(); 3];
+        for _ in 0..samples {
+            let rgb = sample(paths, path, dropped);
+            path += 1;
+            if joint {
+                for (sum, value) in sum.iter_mut().zip(rgb) {
+                    sum.add(value);
+                }
+            } else {
+                statistics.add_unit(1, rgb);
+            }
+        }
+        if joint {
+            statistics.add_unit(samples, sum.map(A::total));
+        }
+        *pixel = statistics;
+    }
+}
+
+/// The colour of a finished path; black, and counted, where it is no radiance.
+#[inline(always)]
+fn sample<C: Colour>(
+    paths: &CameraPaths<C>,
+    path: usize,
+    dropped: &mut DroppedSamples,
+) -> [f64; 3] {
+    let radiance = paths.radiance[path];
+    let components = radiance.components();
+    let is_radiance = |sound, &value: &f32| sound & (value >= 0.0) & (value <= f32::MAX);
+    if !components.iter().fold(true, is_radiance) {
+        dropped.count(components);
+        return [0.0; 3];
+    }
+    let weight = f64::from(paths.filter_weight[path]);
+    C::to_rgb(radiance, &paths.wavelengths[path]).map(|value| f64::from(value) * weight)
+}
