@@ -35,6 +35,7 @@ pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};
 pub use integrators::{PathIntegrator, SurfaceSamples};
 pub use light_choice::{ChosenLight, Cone, LightBounds, LightChoice};
 pub use load::LoadOptions;
+pub(crate) use sensors::CameraRayLanes;
 pub use sensors::{
     Camera, CameraError, CameraRay, CameraView, CropWindow, FieldOfView, FilmDescription,
     FilmError, FovAxis, ImageSize, Orthographic, OrthographicView, Perspective, PinholeView,

@@ -2,10 +2,12 @@
 
 use super::cie::matching_srgb;
 use super::curve::SpectralCurve;
+use super::curve_lanes;
 use super::emission_image::{BetweenTexels, EmissionImage};
 use super::reflectances::Reflectances;
 use super::values::{Spectrum, SpectrumArithmetic};
 use super::wavelengths::Wavelengths;
+use crate::lanes::CHUNK;
 use std::fmt::Debug;
 
 /// A way to carry colours along a path.
@@ -19,11 +21,17 @@ pub trait Colour: Copy + Debug + Default + Send + Sync + 'static {
     /// How many uniform numbers [`Self::sample_wavelengths`] makes use of: 0 or 1.
     const RANDOM_NUMBERS: usize;
 
-    /// Draws the wavelengths of a path from the uniform number `u` in [0, 1).
-    fn sample_wavelengths(u: f32) -> Self::Wavelengths;
+    /// Appends the wavelengths of `count` paths, at most [`CHUNK`], each drawn from its uniform number `u` in [0, 1).
+    fn sample_wavelengths(u: &[f32; CHUNK], count: usize, drawn: &mut Vec<Self::Wavelengths>);
 
     /// The values of a colour of the scene for a path with `wavelengths`.
     fn evaluate(curve: &SpectralCurve, wavelengths: &Self::Wavelengths) -> Self::Spectrum;
+
+    /// Hands the values of many colours of the scene, each for a path with the wavelengths beside it, to `take`, in their order.
+    fn evaluate_each<'a>(
+        colours: impl Iterator<Item = (&'a SpectralCurve, &'a Self::Wavelengths)>,
+        take: impl FnMut(Self::Spectrum),
+    );
 
     /// The values of a point of an image of emitted colours for a path with `wavelengths`.
     fn evaluate_emission(
@@ -54,11 +62,23 @@ impl Colour for Rgb {
     const RANDOM_NUMBERS: usize = 0;
 
     #[inline]
-    fn sample_wavelengths(_u: f32) {}
+    fn sample_wavelengths(_u: &[f32; CHUNK], count: usize, drawn: &mut Vec<()>) {
+        drawn.resize(drawn.len() + count, ());
+    }
 
     #[inline(always)]
     fn evaluate(curve: &SpectralCurve, _wavelengths: &()) -> Spectrum<3> {
         Spectrum(curve.rgb())
+    }
+
+    #[inline(always)]
+    fn evaluate_each<'a>(
+        colours: impl Iterator<Item = (&'a SpectralCurve, &'a ())>,
+        mut take: impl FnMut(Spectrum<3>),
+    ) {
+        for (curve, _) in colours {
+            take(Spectrum(curve.rgb()));
+        }
     }
 
     #[inline]
@@ -91,13 +111,21 @@ impl<const N: usize> Colour for Spectral<N> {
     const RANDOM_NUMBERS: usize = 1;
 
     #[inline(always)]
-    fn sample_wavelengths(u: f32) -> Wavelengths<N> {
-        Wavelengths::sample(u)
+    fn sample_wavelengths(u: &[f32; CHUNK], count: usize, drawn: &mut Vec<Wavelengths<N>>) {
+        Wavelengths::sample_each(u, count, drawn);
     }
 
     #[inline(always)]
     fn evaluate(curve: &SpectralCurve, wavelengths: &Wavelengths<N>) -> Spectrum<N> {
         curve.evaluate(wavelengths)
+    }
+
+    #[inline(always)]
+    fn evaluate_each<'a>(
+        colours: impl Iterator<Item = (&'a SpectralCurve, &'a Wavelengths<N>)>,
+        take: impl FnMut(Spectrum<N>),
+    ) {
+        curve_lanes::evaluate_each(colours, take);
     }
 
     #[inline]
@@ -140,7 +168,7 @@ mod tests {
         let paths = 20_000;
         let mut sum = [0.0f64; 3];
         for path in 0..paths {
-            let wavelengths = Spectral::<N>::sample_wavelengths((path as f32 + 0.5) / paths as f32);
+            let wavelengths = Wavelengths::<N>::sample((path as f32 + 0.5) / paths as f32);
             for (sum, channel) in sum
                 .iter_mut()
                 .zip(Spectral::to_rgb(radiance(&wavelengths), &wavelengths))

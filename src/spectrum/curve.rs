@@ -5,7 +5,7 @@ use super::cie::{
     srgb_of_reflectance, srgb_under_d65,
 };
 use super::error::{CurveError, Place};
-use super::piecewise_linear::PiecewiseLinear;
+use super::piecewise_linear::{PiecewiseLinear, RegularTable};
 use super::upsampling::SigmoidPolynomial;
 use super::values::Spectrum;
 use super::wavelengths::Wavelengths;
@@ -248,6 +248,15 @@ impl SpectralCurve {
         let nanometres = WAVELENGTH_MIN as u16..=WAVELENGTH_MAX as u16;
         let mut values = nanometres.map(|nm| self.evaluate(&Wavelengths::at([f32::from(nm)]))[0]);
         values.all(|value| value > 0.0)
+    }
+
+    /// The measured values that it is made of, if they stand at equal distances.
+    #[inline(always)]
+    pub(super) fn regular_table(&self) -> Option<&RegularTable> {
+        match &self.shape {
+            Shape::Tabulated(PiecewiseLinear::Regular(table)) => Some(table),
+            _ => None,
+        }
     }
 
     /// The values at `wavelengths`.

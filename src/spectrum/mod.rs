@@ -11,6 +11,7 @@ mod cie;
 mod cie_tables;
 mod colour;
 mod curve;
+mod curve_lanes;
 mod emission_image;
 mod error;
 mod piecewise_linear;

@@ -15,20 +15,28 @@ pub(super) enum PiecewiseLinear {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RegularTable {
     /// Wavelength of the first value, in nm.
-    first_nm: f32,
+    pub first_nm: f32,
     /// Wavelength of the last value, in nm.
-    last_nm: f32,
+    pub last_nm: f32,
     /// Entries per nm.
-    entries_per_nm: f32,
+    pub entries_per_nm: f32,
     /// Of every entry but the last, at least one: its value, and the next one less it.
-    intervals: Box<[Interval]>,
+    pub intervals: Box<[Interval]>,
 }
 
 /// From one entry of a table to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Interval {
+pub(super) struct Interval {
     value: f32,
     difference: f32,
+}
+
+impl Interval {
+    /// The value at a `fraction` of the way.
+    #[inline(always)]
+    pub fn at(&self, fraction: f32) -> f32 {
+        self.value + fraction * self.difference
+    }
 }
 
 /// Values at increasing wavelengths.
@@ -49,20 +57,27 @@ pub(super) struct GridPlace {
 }
 
 impl GridPlace {
-    /// That of `position`, in entries from 0 to one more than `last`, which is at most 2^22: the last entry that has one behind
-    /// it. What lies on an entry may be found at the end of the way from the one before.
+    /// That of `position`, in entries; `last` is the last entry that has one behind it, at most 2^22. What lies on an entry may be
+    /// found at the end of the way from the one before. Positions outside of the table become those of its ends.
     ///
     /// Conversions to integers by `as` look after numbers out of range and do not vectorise well. Adding 2^23 leaves the nearest
     /// integer in the last bits.
     #[inline(always)]
     pub(super) fn of(position: f32, last: f32) -> Self {
         const INTEGERS: f32 = (1 << 23) as f32;
-        let integer = (position - 0.5).clamp(0.0, last) + INTEGERS;
+        let integer = between(position - 0.5, 0.0, last) + INTEGERS;
         Self {
             entry: integer.to_bits() - INTEGERS.to_bits(),
-            fraction: position - (integer - INTEGERS),
+            fraction: between(position - (integer - INTEGERS), 0.0, 1.0),
         }
     }
+}
+
+/// `number`, or the limit that it exceeds. The library's function also looks at the order of its limits.
+#[inline(always)]
+fn between(number: f32, least: f32, greatest: f32) -> f32 {
+    let number = if number > least { number } else { least };
+    if number < greatest { number } else { greatest }
 }
 
 /// How far, in steps, an entry may be from its place in a regular table: the rounding of wavelengths to `f32`.
@@ -168,24 +183,19 @@ impl RegularTable {
     /// The value at each of the wavelengths `nm`.
     #[inline(always)]
     pub(super) fn evaluate<const N: usize>(&self, nm: &[f32; N]) -> [f32; N] {
-        let last = (self.intervals.len() - 1) as f32;
-        let (mut entries, mut fractions, mut inside) = ([0_u32; N], [0.0; N], [0_u32; N]);
-        for i in 0..N {
-            // Without a jump: random wavelengths leave the range too unpredictably for one.
-            let position = ((nm[i] - self.first_nm) * self.entries_per_nm).clamp(0.0, last + 1.0);
-            let place = GridPlace::of(position, last);
-            entries[i] = place.entry;
-            fractions[i] = place.fraction;
-            let is_inside = (nm[i] >= self.first_nm) & (nm[i] <= self.last_nm);
-            inside[i] = u32::from(is_inside).wrapping_neg();
-        }
-        let mut values = [0.0; N];
-        for i in 0..N {
-            let Interval { value, difference } = self.intervals[entries[i] as usize];
-            let inside_value = value + fractions[i] * difference;
-            values[i] = f32::from_bits(inside_value.to_bits() & inside[i]);
-        }
-        values
+        nm.map(|nm| {
+            let position = (nm - self.first_nm) * self.entries_per_nm;
+            let place = GridPlace::of(position, self.last_interval());
+            let value = self.intervals[place.entry as usize].at(place.fraction);
+            let is_inside = (nm >= self.first_nm) & (nm <= self.last_nm);
+            if is_inside { value } else { 0.0 }
+        })
+    }
+
+    /// The number of the last interval.
+    #[inline(always)]
+    pub(super) fn last_interval(&self) -> f32 {
+        (self.intervals.len() - 1) as f32
     }
 }
 

@@ -1,6 +1,7 @@
 //! The wavelengths that a path carries, drawn with the importance of the eye's sensitivity.
 
 use super::cie::{WAVELENGTH_MAX, WAVELENGTH_MIN};
+use crate::lanes::CHUNK;
 
 /// Steepness of the density, in 1/nm (Radziszewski et al. 2009, "An improved technique for full spectral
 /// rendering", equation 10).
@@ -32,15 +33,30 @@ impl<const N: usize> Wavelengths<N> {
             pdf: [0.0; N],
         };
         for i in 0..N {
-            let shifted = u + i as f32 / N as f32;
-            let rotated = if shifted >= 1.0 {
-                shifted - 1.0
-            } else {
-                shifted
-            };
-            (drawn.nm[i], drawn.pdf[i]) = sample_visible(rotated);
+            (drawn.nm[i], drawn.pdf[i]) = sample_visible(rotation::<N>(u, i));
         }
         drawn
+    }
+
+    /// Appends `count` of them, at most [`CHUNK`], each drawn by [`Self::sample`] from its number `u`.
+    #[inline(always)]
+    pub(super) fn sample_each(u: &[f32; CHUNK], count: usize, drawn: &mut Vec<Self>) {
+        // One loop over the wavelengths of all: those of one do not fill a vector register.
+        let (mut rotated, mut nm, mut pdf) =
+            ([[0.0; N]; CHUNK], [[0.0; N]; CHUNK], [[0.0; N]; CHUNK]);
+        for (rotated, &u) in rotated.iter_mut().zip(u) {
+            for i in 0..N {
+                rotated[i] = rotation::<N>(u, i);
+            }
+        }
+        let rotated = rotated.as_flattened();
+        let (all_nm, all_pdf) = (nm.as_flattened_mut(), pdf.as_flattened_mut());
+        for i in 0..N * CHUNK {
+            (all_nm[i], all_pdf[i]) = sample_visible(rotated[i]);
+        }
+        for (&nm, &pdf) in nm.iter().zip(&pdf).take(count) {
+            drawn.push(Self { nm, pdf });
+        }
     }
 
     /// Chosen wavelengths, in nm, with densities of 1 per nm.
@@ -58,6 +74,17 @@ impl<const N: usize> Wavelengths<N> {
     #[inline]
     pub fn pdf(&self) -> &[f32; N] {
         &self.pdf
+    }
+}
+
+/// The uniform number of wavelength `i` of `N`, if that of the hero is `u`.
+#[inline(always)]
+fn rotation<const N: usize>(u: f32, i: usize) -> f32 {
+    let shifted = u + i as f32 / N as f32;
+    if shifted >= 1.0 {
+        shifted - 1.0
+    } else {
+        shifted
     }
 }
 

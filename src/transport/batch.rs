@@ -153,21 +153,6 @@ impl<C: Colour> Segments<C> {
             normal: self.hits.normal(index).into(),
         }
     }
-
-    /// Adds the state of the next ray; the ray itself is set in `rays` at the same index.
-    #[inline]
-    pub fn push(
-        &mut self,
-        path: u32,
-        throughput: C::Spectrum,
-        point: SequencePoint,
-        direction_pdf: SolidAnglePdf,
-    ) {
-        self.path.push(path);
-        self.throughput.push(throughput);
-        self.point.push(point);
-        self.direction_pdf.push(direction_pdf);
-    }
 }
 
 impl<C: Colour, V: Variant> Vertices<C, V> {

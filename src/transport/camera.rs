@@ -9,7 +9,7 @@ use super::variant::Variant;
 use crate::film::FilmTile;
 use crate::lanes::CHUNK;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
-use crate::scene::Refraction;
+use crate::scene::{CameraRayLanes, Refraction};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Starts `job.samples` paths for every pixel of the tile, pixel by pixel.
@@ -35,6 +35,8 @@ pub(super) fn start<C: Colour, V: Variant>(
     let mut numbers = [[0.0; CHUNK]; 3];
     // A pinhole looks at no point of a lens.
     let mut lens_numbers = [[0.5; CHUNK]; 2];
+    let mut raster = [[0.0; CHUNK]; 2];
+    let mut rays = CameraRayLanes::new();
     let (mut pixel, mut sample) = (0, 0);
     for start in (0..count).step_by(CHUNK) {
         let chunk = start..count.min(start + CHUNK);
@@ -54,35 +56,25 @@ pub(super) fn start<C: Colour, V: Variant>(
             sampler.fill(points, Use::Lens, lens_numbers.each_mut());
         }
         let [film_u, film_v, wavelength_u] = &numbers;
-        let [lens_u, lens_v] = &lens_numbers;
-        // Not by `extend`: the closure would be compiled for any processor.
-        for &u in &wavelength_u[..chunk.len()] {
-            paths.wavelengths.push(C::sample_wavelengths(u));
-        }
+        C::sample_wavelengths(wavelength_u, chunk.len(), &mut paths.wavelengths);
         (pixel, sample) = (first_pixel, first_sample);
-        for (lane, path) in chunk.enumerate() {
+        for lane in 0..chunk.len() {
             let (x, y) = tile.position(pixel as usize);
             advance(&mut pixel, &mut sample, job.samples);
             let film = engine.filter.sample(x, y, [film_u[lane], film_v[lane]]);
             paths.filter_weight.push(film.weight);
             let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-            let lens = [lens_u[lane], lens_v[lane]];
-            let ray = engine.camera.ray(centre + film.offset, lens);
-            segments.rays.set(
-                path,
-                ray.origin.into(),
-                ray.direction.into(),
-                ray.near,
-                ray.far,
-            );
-            segments.push(
-                path as u32,
-                C::Spectrum::ONE,
-                points[lane],
-                SolidAnglePdf(f32::INFINITY),
-            );
+            [raster[0][lane], raster[1][lane]] = (centre + film.offset).to_array();
         }
+        engine.camera.rays(&raster, &lens_numbers, &mut rays);
+        rays.copy_to(segments.rays.as_mut(), chunk);
+        segments.point.extend_from_slice(points);
     }
+    segments.path.extend(0..count as u32);
+    segments.throughput.resize(count, C::Spectrum::ONE);
+    // No other technique draws what the camera sees.
+    let certain = SolidAnglePdf(f32::INFINITY);
+    segments.direction_pdf.resize(count, certain);
     if V::REFRACTS {
         segments.refraction.resize(count, Refraction::NONE);
     }

@@ -1,5 +1,7 @@
 //! Stage: paths arrive. Emitted light is added, and surfaces that scatter become the vertices of the next stages.
 
+use std::ops::Range;
+
 use glam::Vec3;
 use multiversion::multiversion;
 
@@ -7,10 +9,10 @@ use super::batch::{CameraPaths, Receiver, Segments, Vertices};
 use super::engine::Engine;
 use super::settings::DirectLight;
 use super::surface::SurfaceChunk;
-use super::variant::{Arrival, Scattering, Variant};
-use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
+use super::variant::{Arrivals, Scattering, Variant};
+use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{Sampler, SolidAnglePdf, power_heuristic};
-use crate::scene::{Emitter, EmitterId, Side};
+use crate::scene::{Emitter, EmitterId};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
@@ -30,9 +32,8 @@ pub(super) fn arrive<C: Colour, V: Variant>(
     depth: u32,
     scatters: bool,
 ) {
-    let camera_rays = depth == 0;
     vertices.restart(segments.len());
-    let hidden = camera_rays && engine.settings.hide_emitters;
+    let hides_surroundings = depth == 0 && engine.settings.hide_emitters;
     let mut surfaces = SurfaceChunk::new();
     let mut sides = SideChunk::new();
     for start in (0..segments.len()).step_by(CHUNK) {
@@ -42,58 +43,27 @@ pub(super) fn arrive<C: Colour, V: Variant>(
             segments.rays.directions().map(|axis| &axis[chunk.clone()]),
             &surfaces.points.shading_normal,
         );
-        let mut scattering = KeptLanes::none();
-        for (lane, i) in chunk.enumerate() {
-            let path = segments.path[i];
-            let wavelengths = &paths.wavelengths[path as usize];
-            let Some(shape) = surfaces.shapes[lane] else {
-                if let Some(emitter) = engine.surroundings.filter(|_| !hidden) {
-                    let light = &engine.scene.emitters[emitter];
-                    let direction = Vec3::from(segments.rays.direction(i));
-                    let light_pdf = light.surrounding_pdf(direction);
-                    let weight = engine.mis_weight(segments, i, emitter, light_pdf);
-                    let radiance = light.surrounding_radiance::<C>(direction, wavelengths) * weight;
-                    paths.radiance[path as usize] += segments.throughput[i] * radiance;
-                }
-                continue;
-            };
-            if let Some(emitter) = shape.emitter.map(EmitterId::index)
-                && let Emitter::Area(light) = &engine.scene.emitters[emitter]
-            {
-                let point = surfaces.points.get(lane);
-                let direction = Vec3::from(segments.rays.direction(i));
-                let radiance = light.radiance::<C>(&point, -direction, wavelengths);
-                if !radiance.is_black() {
-                    let origin = Vec3::from(segments.rays.origin(i));
-                    let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
-                    let weight = engine.mis_weight(segments, i, emitter, light_pdf);
-                    paths.radiance[path as usize] += segments.throughput[i] * (radiance * weight);
-                }
-            }
-            if !scatters {
-                continue;
-            }
-            let Some(side) = Side::seen_with(sides.cosine[lane]) else {
-                continue;
-            };
-            let material = &engine.scene.materials[shape.material.index()];
-            let arrival = Arrival::<C> {
-                shape,
-                material,
-                side,
-                wavelengths,
-                depth,
-                segments,
-                index: i,
-                points: &surfaces.points,
-                lane,
-            };
-            let Some(bsdf) = V::Scattering::at(&arrival, sampler) else {
-                continue;
-            };
-            scattering.add_if(lane, true);
-            vertices.bsdf.push(bsdf);
+        add_emission(
+            engine,
+            paths,
+            segments,
+            &surfaces,
+            chunk.clone(),
+            hides_surroundings,
+        );
+        if !scatters {
+            continue;
         }
+        let arrivals = Arrivals {
+            engine,
+            paths,
+            segments,
+            depth,
+            chunk,
+            surfaces: &surfaces,
+            cosines: &sides.cosine,
+        };
+        let scattering = V::Scattering::arrive(&arrivals, sampler, &mut vertices.bsdf);
         let segment_of = |lane| start + lane;
         let kept = scattering.iter().map(segment_of);
         vertices.path.extend(kept.clone().map(|i| segments.path[i]));
@@ -107,6 +77,50 @@ pub(super) fn arrive<C: Colour, V: Variant>(
             .geometric_normal
             .append(&points.geometric_normal, &scattering);
         vertices.normal.append(&sides.normal, &scattering);
+    }
+}
+
+/// Adds what the segments of a chunk find emitted to their paths.
+#[inline(always)]
+fn add_emission<C: Colour>(
+    engine: &Engine,
+    paths: &mut CameraPaths<C>,
+    segments: &Segments<C>,
+    surfaces: &SurfaceChunk,
+    chunk: Range<usize>,
+    hides_surroundings: bool,
+) {
+    for (lane, i) in chunk.enumerate() {
+        let path = segments.path[i] as usize;
+        match surfaces.shapes[lane] {
+            None => {
+                if let Some(emitter) = engine.surroundings.filter(|_| !hides_surroundings) {
+                    let light = &engine.scene.emitters[emitter];
+                    let direction = Vec3::from(segments.rays.direction(i));
+                    let light_pdf = light.surrounding_pdf(direction);
+                    let weight = engine.mis_weight(segments, i, emitter, light_pdf);
+                    let wavelengths = &paths.wavelengths[path];
+                    let radiance = light.surrounding_radiance::<C>(direction, wavelengths) * weight;
+                    paths.radiance[path] += segments.throughput[i] * radiance;
+                }
+            }
+            Some(shape) => {
+                if let Some(emitter) = shape.emitter.map(EmitterId::index)
+                    && let Emitter::Area(light) = &engine.scene.emitters[emitter]
+                {
+                    let point = surfaces.points.get(lane);
+                    let direction = Vec3::from(segments.rays.direction(i));
+                    let wavelengths = &paths.wavelengths[path];
+                    let radiance = light.radiance::<C>(&point, -direction, wavelengths);
+                    if !radiance.is_black() {
+                        let origin = Vec3::from(segments.rays.origin(i));
+                        let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
+                        let weight = engine.mis_weight(segments, i, emitter, light_pdf);
+                        paths.radiance[path] += segments.throughput[i] * (radiance * weight);
+                    }
+                }
+            }
+        }
     }
 }
 

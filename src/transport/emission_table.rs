@@ -45,11 +45,9 @@ impl EmissionTable {
             &mut paths.emission,
             paths.wavelengths.len() * self.curves.len(),
         );
-        for wavelengths in &paths.wavelengths {
-            for curve in &self.curves {
-                paths.emission.push(C::evaluate(curve, wavelengths));
-            }
-        }
+        let curves_of = |wavelengths| self.curves.iter().map(move |curve| (curve, wavelengths));
+        let colours = paths.wavelengths.iter().flat_map(curves_of);
+        C::evaluate_each(colours, |radiance| paths.emission.push(radiance));
     }
 
     /// The radiance of emitter number `emitter`, which is `light`, at the wavelengths of `path`.

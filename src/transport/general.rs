@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::variant::{Arrival, Scattering, Variant};
-use crate::lanes::{CHUNK, VectorLanes};
+use super::variant::{Arrival, Arrivals, Scattering, Variant};
+use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::{Frame, Sampler};
 use crate::scene::{Bsdf, BsdfSamples, BsdfValues, Refraction, SeenPoint, SurfaceParameters};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -39,9 +39,8 @@ impl<S: SpectrumArithmetic> Local<S> {
             spectrum
         }
     }
-}
 
-impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
+    /// That of the surface at which a path arrives; `None` where it is black.
     #[inline]
     fn at<C: Colour<Spectrum = S>>(arrival: &Arrival<C>, sampler: &mut Sampler) -> Option<Self> {
         let (material, point) = (arrival.material, arrival.point());
@@ -59,7 +58,7 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
             (frame, frame, SurfaceParameters::default())
         };
         let choice = if material.is_mixed() {
-            sampler.material_choice(arrival.sequence(), arrival.depth)
+            sampler.material_choice(arrival.sequence(), arrival.depth())
         } else {
             0.0
         };
@@ -73,9 +72,27 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
         Some(Self {
             frame,
             outgoing: seen.outgoing,
-            bsdf: material.bsdf::<C>(&seen, arrival.wavelengths)?,
+            bsdf: material.bsdf::<C>(&seen, arrival.wavelengths())?,
             refraction: arrival.refraction(),
         })
+    }
+}
+
+impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
+    #[inline(always)]
+    fn arrive<C: Colour<Spectrum = S>>(
+        arrivals: &Arrivals<C>,
+        sampler: &mut Sampler,
+        vertices: &mut Vec<Self>,
+    ) -> KeptLanes {
+        let mut kept = KeptLanes::none();
+        for (lane, arrival) in arrivals.at_surfaces() {
+            if let Some(local) = Self::at(&arrival, sampler) {
+                vertices.push(local);
+                kept.add_if(lane, true);
+            }
+        }
+        kept
     }
 
     #[inline]

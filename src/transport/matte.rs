@@ -1,10 +1,10 @@
 //! The variant for scenes whose surfaces are all diffuse, without textures: nothing but a reflectance is known of a vertex.
 
-use super::variant::{Arrival, Scattering, Variant};
-use crate::lanes::{CHUNK, VectorLanes};
+use super::variant::{Arrivals, Scattering, Variant};
+use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::Sampler;
 use crate::scene::{BsdfSamples, BsdfValues, Diffuse, Refraction};
-use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
 
 /// See the module.
 pub(super) struct Matte;
@@ -17,11 +17,24 @@ impl Variant for Matte {
 
 impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     #[inline(always)]
-    fn at<C: Colour<Spectrum = S>>(arrival: &Arrival<C>, _sampler: &mut Sampler) -> Option<Self> {
-        let reflectance = arrival.material.matte(arrival.side)?;
-        Some(Self {
-            reflectance: C::evaluate(reflectance, arrival.wavelengths),
-        })
+    fn arrive<C: Colour<Spectrum = S>>(
+        arrivals: &Arrivals<C>,
+        _sampler: &mut Sampler,
+        vertices: &mut Vec<Self>,
+    ) -> KeptLanes {
+        let mut kept = KeptLanes::none();
+        let mut curves = [&SpectralCurve::BLACK; CHUNK];
+        for (lane, arrival) in arrivals.at_surfaces() {
+            if let Some(reflectance) = arrival.material.matte(arrival.side) {
+                curves[kept.len()] = reflectance;
+                kept.add_if(lane, true);
+            }
+        }
+        let wavelengths = kept.iter().map(|lane| arrivals.wavelengths(lane));
+        C::evaluate_each(curves.into_iter().zip(wavelengths), |reflectance| {
+            vertices.push(Self { reflectance });
+        });
+        kept
     }
 
     #[inline(always)]

@@ -2,15 +2,17 @@
 //! nobody pays for what a scene does not call for.
 
 use std::fmt::Debug;
+use std::ops::Range;
 
 use glam::Vec3;
 
-use super::batch::Segments;
-use crate::lanes::{CHUNK, VectorLanes};
+use super::batch::{CameraPaths, Segments};
+use super::engine::Engine;
+use super::surface::SurfaceChunk;
+use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::{Sampler, SequencePoint};
 use crate::scene::{
-    BsdfSamples, BsdfValues, HitCoordinates, Material, Refraction, Shape, Side, SurfaceLanes,
-    SurfacePoint,
+    BsdfSamples, BsdfValues, HitCoordinates, Material, Refraction, Shape, Side, SurfacePoint,
 };
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -26,8 +28,26 @@ pub(super) trait Variant: Send + Sync + 'static {
     const REFRACTS: bool;
 }
 
-/// A path arrives at a surface. Everything else about it is found by those who ask: a variant does not pay for what it does not
-/// want to know.
+/// A chunk of paths that arrive somewhere. What is known of each is found by those who ask: a variant does not pay for what it
+/// does not want to know.
+pub(super) struct Arrivals<'a, C: Colour> {
+    /// The scene, and what was prepared for it.
+    pub engine: &'a Engine,
+    /// The camera paths that they descend from.
+    pub paths: &'a CameraPaths<C>,
+    /// The paths that arrive, of which the chunk is a part.
+    pub segments: &'a Segments<C>,
+    /// How often they have been scattered before.
+    pub depth: u32,
+    /// Which of the segments these are, at most [`CHUNK`].
+    pub chunk: Range<usize>,
+    /// What they have hit.
+    pub surfaces: &'a SurfaceChunk<'a>,
+    /// Between the direction to where each comes from and the shading normal.
+    pub cosines: &'a [f32; CHUNK],
+}
+
+/// One path that arrives at a surface, on one of its sides.
 pub(super) struct Arrival<'a, C: Colour> {
     /// The shape.
     pub shape: &'a Shape,
@@ -35,49 +55,81 @@ pub(super) struct Arrival<'a, C: Colour> {
     pub material: &'a Material,
     /// The side that the path sees.
     pub side: Side,
-    /// Which wavelengths the path carries.
-    pub wavelengths: &'a C::Wavelengths,
-    /// How often it has been scattered before.
-    pub depth: u32,
-    /// The paths that arrive, and which of them this is.
-    pub segments: &'a Segments<C>,
-    /// Its index among those.
-    pub index: usize,
-    /// Where its chunk arrives.
-    pub points: &'a SurfaceLanes<CHUNK>,
-    /// Its lane in that chunk.
-    pub lane: usize,
+    all: &'a Arrivals<'a, C>,
+    lane: usize,
+}
+
+impl<C: Colour> Arrivals<'_, C> {
+    /// Those that arrive at a surface, with their lanes.
+    #[inline(always)]
+    pub fn at_surfaces(&self) -> impl Iterator<Item = (usize, Arrival<'_, C>)> {
+        (0..self.chunk.len()).filter_map(|lane| {
+            let shape = self.surfaces.shapes[lane]?;
+            let arrival = Arrival {
+                shape,
+                material: &self.engine.scene.materials[shape.material.index()],
+                side: Side::seen_with(self.cosines[lane])?,
+                all: self,
+                lane,
+            };
+            Some((lane, arrival))
+        })
+    }
+
+    /// Which wavelengths the path in a lane carries.
+    #[inline(always)]
+    pub fn wavelengths(&self, lane: usize) -> &C::Wavelengths {
+        &self.paths.wavelengths[self.segments.path[self.chunk.start + lane] as usize]
+    }
 }
 
 impl<C: Colour> Arrival<'_, C> {
+    /// Its index among the segments.
+    #[inline(always)]
+    fn index(&self) -> usize {
+        self.all.chunk.start + self.lane
+    }
+
+    /// Which wavelengths the path carries.
+    #[inline(always)]
+    pub fn wavelengths(&self) -> &C::Wavelengths {
+        self.all.wavelengths(self.lane)
+    }
+
+    /// How often it has been scattered before.
+    #[inline]
+    pub fn depth(&self) -> u32 {
+        self.all.depth
+    }
+
     /// The point that was hit.
     #[inline]
     pub fn point(&self) -> SurfacePoint {
-        self.points.get(self.lane)
+        self.all.surfaces.points.get(self.lane)
     }
 
     /// The same in the terms of the intersection layer.
     #[inline]
     pub fn hit(&self) -> HitCoordinates {
-        self.segments.hit(self.index)
+        self.all.segments.hit(self.index())
     }
 
     /// The unit direction in which the path came, in world space.
     #[inline]
     pub fn direction(&self) -> Vec3 {
-        self.segments.rays.direction(self.index).into()
+        self.all.segments.rays.direction(self.index()).into()
     }
 
     /// Where it stands in its sequence of random numbers.
     #[inline]
     pub fn sequence(&self) -> SequencePoint {
-        self.segments.point[self.index]
+        self.all.segments.point[self.index()]
     }
 
     /// What refraction has done to it, in a variant that [refracts](Variant::REFRACTS).
     #[inline]
     pub fn refraction(&self) -> Refraction {
-        self.segments.refraction[self.index]
+        self.all.segments.refraction[self.index()]
     }
 }
 
@@ -85,8 +137,12 @@ impl<C: Colour> Arrival<'_, C> {
 pub(super) trait Scattering<S: SpectrumArithmetic>:
     Copy + Debug + Send + Sync + 'static
 {
-    /// That of the surface at which a path arrives; `None` where it is black.
-    fn at<C: Colour<Spectrum = S>>(arrival: &Arrival<C>, sampler: &mut Sampler) -> Option<Self>;
+    /// Appends those of the surfaces at which paths arrive to `vertices`, but for black ones, and returns their lanes.
+    fn arrive<C: Colour<Spectrum = S>>(
+        arrivals: &Arrivals<C>,
+        sampler: &mut Sampler,
+        vertices: &mut Vec<Self>,
+    ) -> KeptLanes;
 
     /// The share of the arriving light that is scattered, in [0, 1].
     fn albedo(&self) -> S;

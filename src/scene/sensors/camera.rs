@@ -1,5 +1,7 @@
 //! What all cameras have in common.
 
+use std::ops::Range;
+
 use glam::{DMat4, Vec2, Vec3};
 use thiserror::Error;
 
@@ -7,6 +9,8 @@ use super::ImageSize;
 use super::orthographic::{Orthographic, OrthographicView};
 use super::perspective::{Perspective, PinholeView};
 use super::thin_lens::{ThinLens, ThinLensView};
+use crate::embree::RaysMut;
+use crate::lanes::{CHUNK, VectorLanes};
 use crate::scene::error::SceneError;
 use crate::scene::xml::Object;
 
@@ -45,6 +49,48 @@ pub struct CameraRay {
     pub far: f32,
 }
 
+/// A [`CameraRay`] in each lane.
+pub(crate) struct CameraRayLanes {
+    origin: VectorLanes<CHUNK>,
+    direction: VectorLanes<CHUNK>,
+    near: [f32; CHUNK],
+    far: [f32; CHUNK],
+}
+
+impl CameraRayLanes {
+    /// Without meaning so far.
+    pub fn new() -> Self {
+        Self {
+            origin: VectorLanes::default(),
+            direction: VectorLanes::default(),
+            near: [0.0; CHUNK],
+            far: [0.0; CHUNK],
+        }
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, ray: impl Fn(usize) -> CameraRay) {
+        for lane in 0..CHUNK {
+            let ray = ray(lane);
+            self.origin.put(lane, ray.origin);
+            self.direction.put(lane, ray.direction);
+            self.near[lane] = ray.near;
+            self.far[lane] = ray.far;
+        }
+    }
+
+    /// Copies the first rays to `place`, at most [`CHUNK`] long, among those of a stream.
+    #[inline(always)]
+    pub fn copy_to(&self, rays: RaysMut, place: Range<usize>) {
+        let vectors = self.origin.0.iter().chain(&self.direction.0);
+        let columns = rays.origin.into_iter().chain(rays.direction);
+        let columns = columns.chain([rays.tnear, rays.tfar]);
+        for (column, lanes) in columns.zip(vectors.chain([&self.near, &self.far])) {
+            column[place.clone()].copy_from_slice(&lanes[..place.len()]);
+        }
+    }
+}
+
 impl Camera {
     pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
         match object.plugin.as_str() {
@@ -79,6 +125,24 @@ impl CameraView {
             Self::Pinhole(view) => view.ray(raster),
             Self::ThinLens(view) => view.ray(raster, lens),
             Self::Orthographic(view) => view.ray(raster),
+        }
+    }
+
+    /// The same of every lane of `raster` and `lens`.
+    #[inline(always)]
+    pub(crate) fn rays(
+        &self,
+        raster: &[[f32; CHUNK]; 2],
+        lens: &[[f32; CHUNK]; 2],
+        rays: &mut CameraRayLanes,
+    ) {
+        let raster = |lane| Vec2::new(raster[0][lane], raster[1][lane]);
+        match self {
+            Self::Pinhole(view) => rays.fill(|lane| view.ray(raster(lane))),
+            Self::ThinLens(view) => {
+                rays.fill(|lane| view.ray(raster(lane), [lens[0][lane], lens[1][lane]]));
+            }
+            Self::Orthographic(view) => rays.fill(|lane| view.ray(raster(lane))),
         }
     }
 

@@ -7,6 +7,7 @@ mod orthographic;
 mod perspective;
 mod thin_lens;
 
+pub(crate) use camera::CameraRayLanes;
 pub use camera::{Camera, CameraError, CameraRay, CameraView};
 pub use field_of_view::{FieldOfView, FovAxis};
 pub use film::{

@@ -128,7 +128,7 @@ impl PinholeView {
         let length = at_unit_depth.length();
         CameraRay {
             origin: self.origin,
-            direction: at_unit_depth / length,
+            direction: at_unit_depth * (1.0 / length),
             near: self.near * length,
             far: self.far * length,
         }
