@@ -15,22 +15,36 @@ pub struct IndexBuffer {
     padded: Vec<[u32; 3]>,
 }
 
-/// What is known of a vertex, in half a cache line: shading a hit fetches three of them, and nothing else.
-#[repr(C, align(32))]
+/// The vertices of a mesh, each in so many bytes as it needs: shading a hit fetches three of them from anywhere, and what lies
+/// close together is found in the cache more often.
+#[derive(Clone, Debug)]
+pub enum VertexBuffer {
+    /// Those of a mesh that is shaded flat.
+    Flat(Vec<FlatVertex>),
+    /// Those of a mesh with vertex normals.
+    Smooth(Vec<SmoothVertex>),
+}
+
+/// A vertex that is no more than a point.
+#[repr(C, align(16))]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vertex {
+pub struct FlatVertex {
     /// Position in world space.
     pub position: [f32; 3],
     /// Embree reads the position with an instruction for four numbers.
     padding: f32,
-    /// Unit normal in world space; zero in a mesh without vertex normals.
-    pub normal: [f32; 3],
 }
 
-/// The vertices of a mesh; Embree looks at their positions.
-#[derive(Clone, Debug)]
-pub struct VertexBuffer {
-    vertices: Vec<Vertex>,
+/// A vertex with a normal, in half a cache line.
+#[repr(C, align(32))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothVertex {
+    /// Position in world space.
+    pub position: [f32; 3],
+    /// As in [`FlatVertex`].
+    padding: f32,
+    /// Unit normal in world space.
+    pub normal: [f32; 3],
 }
 
 impl IndexBuffer {
@@ -50,26 +64,82 @@ impl IndexBuffer {
 impl VertexBuffer {
     /// Vertices without normals.
     pub fn new(positions: impl IntoIterator<Item = [f32; 3]>) -> Self {
-        Self::with_normals(positions.into_iter().map(|position| (position, [0.0; 3])))
+        let vertices = positions.into_iter().map(|position| FlatVertex {
+            position,
+            padding: 0.0,
+        });
+        Self::Flat(vertices.collect())
     }
 
     /// Positions and unit normals.
     pub fn with_normals(vertices: impl IntoIterator<Item = ([f32; 3], [f32; 3])>) -> Self {
-        let vertices = vertices.into_iter().map(|(position, normal)| Vertex {
+        let vertices = vertices.into_iter().map(|(position, normal)| SmoothVertex {
             position,
             padding: 0.0,
             normal,
         });
-        Self {
-            vertices: vertices.collect(),
+        Self::Smooth(vertices.collect())
+    }
+
+    /// The number of vertices.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Flat(vertices) => vertices.len(),
+            Self::Smooth(vertices) => vertices.len(),
         }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The position of a vertex, in world space.
+    ///
+    /// # Panics
+    /// When `index` is not below [`len`](Self::len).
+    #[inline]
+    pub fn position(&self, index: u32) -> [f32; 3] {
+        match self {
+            Self::Flat(vertices) => vertices[index as usize].position,
+            Self::Smooth(vertices) => vertices[index as usize].position,
+        }
+    }
+
+    /// The positions of all vertices, in world space.
+    pub fn positions(&self) -> impl Iterator<Item = [f32; 3]> {
+        (0..self.len() as u32).map(|index| self.position(index))
     }
 
     /// Says that vertex `index` will be wanted soon, so that the processor need not wait for it then. Any index may be given.
     #[inline(always)]
     pub fn prefetch(&self, index: u32) {
-        prefetch(self.vertices.as_ptr().wrapping_add(index as usize));
+        match self {
+            Self::Flat(vertices) => prefetch(vertices.as_ptr().wrapping_add(index as usize)),
+            Self::Smooth(vertices) => prefetch(vertices.as_ptr().wrapping_add(index as usize)),
+        }
     }
+
+    /// Where the positions begin, and how many bytes lie from one to the next.
+    pub(super) fn layout(&self) -> VertexLayout {
+        match self {
+            Self::Flat(vertices) => VertexLayout {
+                start: vertices.as_ptr().cast(),
+                stride: size_of::<FlatVertex>(),
+            },
+            Self::Smooth(vertices) => VertexLayout {
+                start: vertices.as_ptr().cast(),
+                stride: size_of::<SmoothVertex>(),
+            },
+        }
+    }
+}
+
+/// Where Embree finds the positions of a [`VertexBuffer`].
+pub(super) struct VertexLayout {
+    pub start: *const f32,
+    /// In bytes.
+    pub stride: usize,
 }
 
 impl Deref for IndexBuffer {
@@ -77,14 +147,6 @@ impl Deref for IndexBuffer {
 
     fn deref(&self) -> &[[u32; 3]] {
         &self.padded[..self.padded.len() - 1]
-    }
-}
-
-impl Deref for VertexBuffer {
-    type Target = [Vertex];
-
-    fn deref(&self) -> &[Vertex] {
-        &self.vertices
     }
 }
 
@@ -117,12 +179,17 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_is_half_a_cache_line_and_16_bytes_are_readable_at_its_position() {
-        assert_eq!(size_of::<Vertex>(), 32);
-        let buffer = VertexBuffer::with_normals([([1.0, 2.0, 3.0], [0.0, 0.0, 1.0])]);
-        assert_eq!(buffer.as_ptr() as usize % 32, 0);
-        let start = (&raw const buffer[0]) as usize;
-        assert_eq!((&raw const buffer[0].position) as usize, start);
-        assert_eq!((&raw const buffer[0].normal) as usize, start + 16);
+    fn sixteen_bytes_are_readable_at_every_position() {
+        let flat = VertexBuffer::new([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+        let smooth = VertexBuffer::with_normals(
+            [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]].map(|position| (position, [0.0, 0.0, 1.0])),
+        );
+        for (buffer, bytes) in [(flat, 16), (smooth, 32)] {
+            assert_eq!(buffer.positions().last(), Some([4.0, 5.0, 6.0]));
+            let layout = buffer.layout();
+            assert_eq!(layout.stride, bytes);
+            // No vertex lies across the border of two cache lines.
+            assert_eq!(layout.start as usize % bytes, 0);
+        }
     }
 }

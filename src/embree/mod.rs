@@ -38,7 +38,7 @@ mod version;
 #[cfg(test)]
 mod tests;
 
-pub use buffer::{IndexBuffer, Vertex, VertexBuffer};
+pub use buffer::{FlatVertex, IndexBuffer, SmoothVertex, VertexBuffer};
 pub use denormals::{DenormalsFlushed, flush_denormals_to_zero};
 pub use device::Device;
 pub use error::{EmbreeError, ErrorKind};

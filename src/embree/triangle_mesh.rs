@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::buffer::{IndexBuffer, Vertex, VertexBuffer};
+use super::buffer::{IndexBuffer, VertexBuffer, VertexLayout};
 use super::device::Device;
 use super::error::EmbreeError;
 use super::geometry::{GeometryHandle, is_valid};
@@ -36,14 +36,10 @@ impl TriangleMesh {
                 count: triangles.len(),
             });
         }
-        if let Some(vertex) = vertices
-            .iter()
-            .position(|vertex| !is_valid(vertex.position))
-        {
-            return Err(EmbreeError::BadVertex {
-                vertex,
-                position: vertices[vertex].position,
-            });
+        for (vertex, position) in vertices.positions().enumerate() {
+            if !is_valid(position) {
+                return Err(EmbreeError::BadVertex { vertex, position });
+            }
         }
         let count = vertices.len();
         for (triangle, corners) in triangles.iter().enumerate() {
@@ -75,6 +71,7 @@ impl TriangleMesh {
     /// must outlive the object and every scene that it is attached to.
     pub(super) fn to_embree(&self, device: &Device) -> Result<GeometryHandle, EmbreeError> {
         let geometry = GeometryHandle::new(device, raw::RTCGeometryType::TRIANGLE)?;
+        let VertexLayout { start, stride } = self.vertices.layout();
         // SAFETY: the geometry is alive; the buffers hold as many triples of the stated format, at the
         // stated distances, as stated; they never change, 16 bytes are readable at each triple as
         // Embree asks, and they outlive the geometry (see above); every index was checked.
@@ -84,9 +81,9 @@ impl TriangleMesh {
                 raw::RTCBufferType::VERTEX,
                 0,
                 raw::RTCFormat::FLOAT3,
-                self.vertices.as_ptr().cast(),
+                start.cast(),
                 0,
-                size_of::<Vertex>() as _,
+                stride as _,
                 self.vertices.len() as _,
             );
             raw::rtcSetSharedGeometryBuffer(

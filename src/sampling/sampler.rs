@@ -103,22 +103,17 @@ impl Sampler {
         }
     }
 
-    /// Which kind it is.
-    pub fn kind(&self) -> SamplerKind {
-        self.kind
+    /// Whether the numbers are those of sequences. If not, points of sequences are never looked at.
+    #[inline]
+    pub fn has_sequences(&self) -> bool {
+        self.kind == SamplerKind::Sobol
     }
 
     /// The point of sample number `index` of pixel number `pixel` of the batch's tile, over all passes.
     pub fn point(&self, pixel: u32, index: u64) -> SequencePoint {
-        match self.kind {
-            // It is never looked at.
-            SamplerKind::Independent => SequencePoint::default(),
-            SamplerKind::Sobol => {
-                let seed = self.key.seed;
-                let key = [seed as u32, (seed >> 32) as u32, self.key.tile, pixel];
-                SequencePoint::new(key, index)
-            }
-        }
+        let seed = self.key.seed;
+        let key = [seed as u32, (seed >> 32) as u32, self.key.tile, pixel];
+        SequencePoint::new(key, index)
     }
 
     /// Up to three numbers in \[0, 1) for what the path at `point` does with them.
@@ -134,22 +129,24 @@ impl Sampler {
         }
     }
 
-    /// As [`Self::numbers`] for each of `points`: `lanes` has one array per number, and a lane for each point.
+    /// As [`Self::numbers`] for each of the first `points`, `count` of them: `lanes` has one array per number, and a lane for each
+    /// point.
     #[inline(always)]
     pub fn fill<const N: usize, const LANES: usize>(
         &mut self,
-        points: &[SequencePoint],
+        points: &[SequencePoint; LANES],
+        count: usize,
         what: Use,
         mut lanes: [&mut [f32; LANES]; N],
     ) {
         match self.kind {
             SamplerKind::Independent => {
                 for lanes in &mut lanes {
-                    self.stream.fill_uniform(&mut lanes[..points.len()]);
+                    self.stream.fill_uniform(&mut lanes[..count]);
                 }
             }
             SamplerKind::Sobol => {
-                for (lane, &point) in points.iter().enumerate() {
+                for (lane, &point) in points[..count].iter().enumerate() {
                     let coordinates = point.coordinates(what.dimensions());
                     for (lanes, coordinate) in lanes.iter_mut().zip(coordinates) {
                         lanes[lane] = coordinate;

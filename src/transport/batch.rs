@@ -30,7 +30,7 @@ pub(super) struct Segments<C: Colour> {
     pub path: Vec<u32>,
     /// Throughput, with the bsdf of the vertex that it left and the compensation for all decisions so far.
     pub throughput: Vec<C::Spectrum>,
-    /// Where the particle stands in its sequence of random numbers.
+    /// Where the particle stands in its sequence of random numbers. Empty where those are independent.
     pub point: Vec<SequencePoint>,
     /// What refraction has done to it. Empty in variants that do not refract.
     pub refraction: Vec<Refraction>,
@@ -59,7 +59,7 @@ pub(super) struct Vertices<C: Colour, V: Variant> {
     pub path: Vec<u32>,
     /// Throughput on arrival.
     pub throughput: Vec<C::Spectrum>,
-    /// Where the particle stands in its sequence of random numbers.
+    /// Where the particle stands in its sequence of random numbers. Empty where those are independent.
     pub point: Vec<SequencePoint>,
     /// Position in world space.
     pub position: VectorColumn,

@@ -28,7 +28,8 @@ pub(super) fn start<C: Colour, V: Variant>(
     let has_lens = engine.camera.has_lens();
     let crop = engine.scene.film.crop;
     let corner = Vec2::new(crop.x as f32, crop.y as f32);
-    let count = tile.pixels.count() * job.samples as usize;
+    let samples = job.samples as usize;
+    let count = tile.pixels.count() * samples;
     paths.restart(count);
     segments.restart(count);
     let mut points = [SequencePoint::default(); CHUNK];
@@ -40,24 +41,24 @@ pub(super) fn start<C: Colour, V: Variant>(
     let (mut pixel, mut sample) = (0, 0);
     for start in (0..count).step_by(CHUNK) {
         let chunk = start..count.min(start + CHUNK);
-        let (first_pixel, first_sample) = (pixel, sample);
-        for point in &mut points[..chunk.len()] {
-            *point = sampler.point(pixel, job.first_sample + u64::from(sample));
-            advance(&mut pixel, &mut sample, job.samples);
+        if sampler.has_sequences() {
+            for (point, path) in points.iter_mut().zip(chunk.clone()) {
+                let (pixel, sample) = (path / samples, path % samples);
+                *point = sampler.point(pixel as u32, job.first_sample + sample as u64);
+            }
+            segments.point.extend_from_slice(&points[..chunk.len()]);
         }
-        let points = &points[..chunk.len()];
         if C::RANDOM_NUMBERS > 0 {
-            sampler.fill(points, Use::Camera, numbers.each_mut());
+            sampler.fill(&points, chunk.len(), Use::Camera, numbers.each_mut());
         } else {
             let [u, v, _] = &mut numbers;
-            sampler.fill(points, Use::Camera, [u, v]);
+            sampler.fill(&points, chunk.len(), Use::Camera, [u, v]);
         }
         if has_lens {
-            sampler.fill(points, Use::Lens, lens_numbers.each_mut());
+            sampler.fill(&points, chunk.len(), Use::Lens, lens_numbers.each_mut());
         }
         let [film_u, film_v, wavelength_u] = &numbers;
         C::sample_wavelengths(wavelength_u, chunk.len(), &mut paths.wavelengths);
-        (pixel, sample) = (first_pixel, first_sample);
         for lane in 0..chunk.len() {
             let (x, y) = tile.position(pixel as usize);
             advance(&mut pixel, &mut sample, job.samples);
@@ -68,7 +69,6 @@ pub(super) fn start<C: Colour, V: Variant>(
         }
         engine.camera.rays(&raster, &lens_numbers, &mut rays);
         rays.copy_to(segments.rays.as_mut(), chunk);
-        segments.point.extend_from_slice(points);
     }
     segments.path.extend(0..count as u32);
     segments.throughput.resize(count, C::Spectrum::ONE);

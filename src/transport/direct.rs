@@ -44,11 +44,12 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     let starts = (0..vertices.len()).step_by(CHUNK);
     for (sample, start) in (0..samples.emitters).flat_map(|s| starts.clone().map(move |i| (s, i))) {
         let chunk = start..vertices.len().min(start + CHUNK);
-        let points = &mut points[..chunk.len()];
-        for (point, vertex) in points.iter_mut().zip(&vertices.point[chunk.clone()]) {
-            *point = vertex.branch(sample, depth);
+        if sampler.has_sequences() {
+            for (point, vertex) in points.iter_mut().zip(&vertices.point[chunk.clone()]) {
+                *point = vertex.branch(sample, depth);
+            }
         }
-        sampler.fill(points, Use::Light(depth), numbers.each_mut());
+        sampler.fill(&points, chunk.len(), Use::Light(depth), numbers.each_mut());
         positions.load(vertices.position.slices(chunk.clone()));
         lights.draw(engine, paths, vertices, chunk.clone(), &positions, &numbers);
         normals.load(vertices.normal.slices(chunk.clone()));

@@ -70,7 +70,9 @@ pub(super) fn arrive<C: Colour, V: Variant>(
         vertices
             .throughput
             .extend(kept.clone().map(|i| segments.throughput[i]));
-        vertices.point.extend(kept.map(|i| segments.point[i]));
+        if sampler.has_sequences() {
+            vertices.point.extend(kept.map(|i| segments.point[i]));
+        }
         let points = &surfaces.points;
         vertices.position.append(&points.position, &scattering);
         vertices

@@ -39,16 +39,20 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     let mut origins = VectorLanes::default();
     for children in children.chunks(CHUNK) {
         for (lane, child) in children.iter().enumerate() {
-            let parent = child.parent as usize;
-            points[lane] = vertices.point[parent].branch(elders.before(child), depth);
-            normals.put(lane, vertices.normal.get(parent));
+            normals.put(lane, vertices.normal.get(child.parent as usize));
         }
-        let drawn = &points[..children.len()];
+        if sampler.has_sequences() {
+            for (point, child) in points.iter_mut().zip(children) {
+                let parent = vertices.point[child.parent as usize];
+                *point = parent.branch(elders.before(child), depth);
+            }
+        }
+        let direction = Use::Direction(depth);
         if V::CHOOSES_LOBES {
-            sampler.fill(drawn, Use::Direction(depth), numbers.each_mut());
+            sampler.fill(&points, children.len(), direction, numbers.each_mut());
         } else {
             let [u, v, _] = &mut numbers;
-            sampler.fill(drawn, Use::Direction(depth), [u, v]);
+            sampler.fill(&points, children.len(), direction, [u, v]);
         }
         let parents = children.iter().map(|child| child.parent as usize);
         let bsdfs = parents.clone().map(|parent| &vertices.bsdf[parent]);
@@ -80,9 +84,10 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         segments
             .throughput
             .extend(lanes.clone().map(|lane| throughputs[lane]));
-        segments
-            .point
-            .extend(lanes.clone().map(|lane| points[lane]));
+        if sampler.has_sequences() {
+            let points = lanes.clone().map(|lane| points[lane]);
+            segments.point.extend(points);
+        }
         segments
             .direction_pdf
             .extend(lanes.clone().map(|lane| SolidAnglePdf(samples.pdf[lane])));

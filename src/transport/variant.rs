@@ -120,10 +120,11 @@ impl<C: Colour> Arrival<'_, C> {
         self.all.segments.rays.direction(self.index()).into()
     }
 
-    /// Where it stands in its sequence of random numbers.
+    /// Where it stands in its sequence of random numbers; nowhere without sequences.
     #[inline]
     pub fn sequence(&self) -> SequencePoint {
-        self.all.segments.point[self.index()]
+        let points = &self.all.segments.point;
+        points.get(self.index()).copied().unwrap_or_default()
     }
 
     /// What refraction has done to it, in a variant that [refracts](Variant::REFRACTS).

@@ -2,7 +2,7 @@
 
 use super::batch::{Particles, Vertices};
 use super::variant::{Scattering, Variant};
-use crate::sampling::{Sampler, SamplerKind};
+use crate::sampling::Sampler;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::{Offspring, Population, Scalar, Scope, Strategy, WalkReport};
 
@@ -57,10 +57,7 @@ pub(super) fn decide<C: Colour, V: Variant>(
         shininess: &particles.shininess,
         group: &particles.group,
         depth,
-        points: match sampler.kind() {
-            SamplerKind::Independent => None,
-            SamplerKind::Sobol => Some(&vertices.point),
-        },
+        points: sampler.has_sequences().then_some(&vertices.point),
     };
     strategy.resample(&population, sampler.stream(), offspring)
 }

@@ -83,7 +83,7 @@ fn corners(geometry: &Geometry) -> (Vec3, Vec3) {
     match geometry {
         Geometry::Triangles(mesh) => {
             let used = mesh.indices().iter().flatten();
-            let positions = used.map(|&index| Vec3::from(mesh.vertices()[index as usize].position));
+            let positions = used.map(|&index| Vec3::from(mesh.vertices().position(index)));
             positions.fold(
                 (Vec3::INFINITY, Vec3::NEG_INFINITY),
                 |(min, max), position| (min.min(position), max.max(position)),

@@ -45,7 +45,7 @@ impl MeshSampling {
             return None;
         }
         let [a, b, c, d] = [first[0], first[1], first[2], second[1]]
-            .map(|i| Vec3::from(mesh.vertices()[i as usize].position));
+            .map(|i| Vec3::from(mesh.vertices().position(i)));
         let (first_edge, second_edge) = (b - a, d - a);
         let tolerance = 1e-6 * (first_edge.length() + second_edge.length());
         let closes = (first_edge + second_edge - (c - a)).length() <= tolerance;

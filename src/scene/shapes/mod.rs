@@ -268,8 +268,8 @@ impl Geometry {
         let near = |point: Vec3| point.abs().max_element() <= FARTHEST;
         match self {
             Self::Triangles(mesh) => {
-                let mut vertices = mesh.vertices().iter();
-                vertices.all(|vertex| near(vertex.position.into()))
+                let mut positions = mesh.vertices().positions();
+                positions.all(|position| near(position.into()))
             }
             Self::Sphere(Sphere { center, radius, .. }) => {
                 near(*center) && *radius <= FARTHEST && self.area().is_normal()

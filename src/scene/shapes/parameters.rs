@@ -84,8 +84,7 @@ mod tests {
             Geometry::Triangles(mesh) => {
                 let meet = |primitive: u32| {
                     let corners = mesh.corners(primitive);
-                    let [a, b, c] =
-                        corners.map(|i| Vec3::from(mesh.vertices()[i as usize].position));
+                    let [a, b, c] = corners.map(|i| Vec3::from(mesh.vertices().position(i)));
                     let matrix = glam::Mat3::from_cols(b - a, c - a, -direction);
                     let solution = matrix.inverse() * (origin - a);
                     let inside =

@@ -9,7 +9,7 @@ use super::mesh_sampling::{MeshSampling, Parallelogram};
 use super::{
     AttributesAt, Geometry, HitCoordinates, Placement, ShapeSample, SurfaceParameters, SurfacePoint,
 };
-use crate::embree::{IndexBuffer, Vertex, VertexBuffer};
+use crate::embree::{IndexBuffer, VertexBuffer};
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;
 use crate::scene::mesh::{self, MeshAttribute, MeshData};
@@ -29,8 +29,6 @@ pub struct Triangles {
 /// What a mesh is beside vertices and indices.
 #[derive(Clone, Debug, Default)]
 pub struct TriangleAttributes {
-    /// Whether the vertices have normals; without them the mesh is shaded flat.
-    pub is_smooth: bool,
     /// Texture coordinates of the vertices.
     pub uvs: Option<Vec<[f32; 2]>>,
     /// What else is said of vertices and triangles.
@@ -97,7 +95,6 @@ impl Triangles {
         };
         let normals = normals.filter(|normals| !are_flat(&mesh, normals));
         let attributes = TriangleAttributes {
-            is_smooth: normals.is_some(),
             uvs: mesh.uvs.take(),
             named: std::mem::take(&mut mesh.attributes),
             flip_normals: placement.flip_normals,
@@ -181,7 +178,7 @@ impl Triangles {
 
     /// Whether the mesh is shaded with vertex normals.
     pub fn is_smooth(&self) -> bool {
-        self.attributes.is_smooth
+        matches!(*self.vertices, VertexBuffer::Smooth(_))
     }
 
     #[inline]
@@ -204,15 +201,15 @@ impl Triangles {
         hit: &HitCoordinates,
         point: &SurfacePoint,
     ) -> SurfaceParameters<'_> {
-        let corners = self.corners(hit.primitive).map(|i| i as usize);
-        let [a, b, c] = corners.map(|i| Vec3::from(self.vertices[i].position));
+        let corners = self.corners(hit.primitive);
+        let [a, b, c] = corners.map(|i| Vec3::from(self.vertices.position(i)));
         let (ab, ac) = (b - a, c - a);
         let geometric_normal = point.geometric_normal;
         let named = &self.attributes.named;
         let attributes = (!named.is_empty()).then(|| AttributesAt {
             attributes: named,
             triangle: hit.primitive,
-            corners: self.corners(hit.primitive),
+            corners,
             barycentric: [hit.u, hit.v],
         });
         let Some(uvs) = &self.attributes.uvs else {
@@ -224,7 +221,7 @@ impl Triangles {
                 attributes,
             };
         };
-        let [uv_a, uv_b, uv_c] = corners.map(|i| Vec2::from(uvs[i]));
+        let [uv_a, uv_b, uv_c] = corners.map(|i| Vec2::from(uvs[i as usize]));
         let (uv_ab, uv_ac) = (uv_b - uv_a, uv_c - uv_a);
         let uv = uv_a + uv_ab * hit.u + uv_ac * hit.v;
         let determinant = uv_ab.perp_dot(uv_ac);
@@ -277,11 +274,18 @@ impl Triangles {
         lanes: &mut CornerLanes<N>,
         lane: usize,
     ) {
-        let corners = corners.map(|corner| &self.vertices[corner as usize]);
-        let positions = corners.map(|corner| corner.position.into());
-        lanes.set(lane, positions, self.attributes.flip_normals);
-        if self.attributes.is_smooth {
-            lanes.set_normals(lane, corners.map(|corner| corner.normal.into()));
+        let is_flipped = self.attributes.flip_normals;
+        match &*self.vertices {
+            VertexBuffer::Flat(vertices) => {
+                let corners = corners.map(|corner| vertices[corner as usize].position.into());
+                lanes.set(lane, corners, is_flipped);
+            }
+            VertexBuffer::Smooth(vertices) => {
+                let corners = corners.map(|corner| &vertices[corner as usize]);
+                let positions = corners.map(|corner| corner.position.into());
+                lanes.set(lane, positions, is_flipped);
+                lanes.set_normals(lane, corners.map(|corner| corner.normal.into()));
+            }
         }
     }
 
@@ -304,9 +308,9 @@ impl Triangles {
     }
 }
 
-fn triangle_areas(vertices: &[Vertex], indices: &[[u32; 3]]) -> impl Iterator<Item = f32> {
+fn triangle_areas(vertices: &VertexBuffer, indices: &[[u32; 3]]) -> impl Iterator<Item = f32> {
     indices.iter().map(|triangle| {
-        let [a, b, c] = triangle.map(|i| Vec3::from(vertices[i as usize].position));
+        let [a, b, c] = triangle.map(|i| Vec3::from(vertices.position(i)));
         0.5 * (b - a).cross(c - a).length()
     })
 }
