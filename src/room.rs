@@ -1,7 +1,7 @@
 //! Lists that are filled anew for every batch.
 
 /// How many entries there is to be room for where `count` are wanted.
-pub(crate) fn with_room(count: usize) -> usize {
+fn with_room(count: usize) -> usize {
     (count + count / 4).next_power_of_two()
 }
 
@@ -12,4 +12,10 @@ pub(crate) fn with_room(count: usize) -> usize {
 pub(crate) fn make_room<T>(list: &mut Vec<T>, count: usize) {
     list.clear();
     list.reserve(with_room(count));
+}
+
+/// Makes `list` `count` entries long, whatever they are, with the same room.
+pub(crate) fn resize<T: Clone + Default>(list: &mut Vec<T>, count: usize) {
+    list.reserve(with_room(count).saturating_sub(list.len()));
+    list.resize(count, T::default());
 }

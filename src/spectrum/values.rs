@@ -112,7 +112,8 @@ impl<const N: usize> SpectrumArithmetic for Spectrum<N> {
 
     #[inline]
     fn max_component(self) -> f32 {
-        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
+        let larger = |most, v| if v > most { v } else { most };
+        self.0.into_iter().fold(f32::NEG_INFINITY, larger)
     }
 
     #[inline]

@@ -1,5 +1,7 @@
 //! Stage: the strategy decides how many children every vertex gets.
 
+use multiversion::multiversion;
+
 use super::batch::{Particles, Vertices};
 use super::variant::{Scattering, Variant};
 use crate::sampling::Sampler;
@@ -18,39 +20,14 @@ pub(super) fn decide<C: Colour, V: Variant>(
     sampler: &mut Sampler,
     offspring: &mut Offspring,
 ) -> WalkReport {
-    // Asked once: a call through the trait for every particle would be felt.
-    let (wanted, scope) = (strategy.scalar(), strategy.scope());
-    let scalar = |spectrum: C::Spectrum| match wanted {
-        Scalar::Mean => spectrum.mean(),
-        Scalar::Maximum => spectrum.max_component(),
-    };
     particles.restart(vertices.len());
-    particles.importance.extend(
-        vertices
-            .throughput
-            .iter()
-            .map(|&throughput| scalar(throughput)),
+    show(
+        vertices,
+        strategy.scalar(),
+        strategy.scope(),
+        samples,
+        particles,
     );
-    if V::REFRACTS {
-        // As Mitsuba's roulette: light is not less important for being compressed.
-        for (importance, bsdf) in particles.importance.iter_mut().zip(&vertices.bsdf) {
-            *importance *= bsdf.refraction().squared_index;
-        }
-    }
-    particles
-        .albedo
-        .extend(vertices.bsdf.iter().map(|bsdf| scalar(bsdf.albedo())));
-    particles
-        .shininess
-        .extend(vertices.bsdf.iter().map(|bsdf| bsdf.shininess()));
-    let group_of = |path: u32| match scope {
-        Scope::Particle | Scope::CameraPath => path,
-        Scope::Pixel => path / samples,
-        Scope::Tile => 0,
-    };
-    particles
-        .group
-        .extend(vertices.path.iter().map(|&path| group_of(path)));
     let population = Population {
         importance: &particles.importance,
         albedo: &particles.albedo,
@@ -60,4 +37,41 @@ pub(super) fn decide<C: Colour, V: Variant>(
         points: sampler.has_sequences().then_some(&vertices.point),
     };
     strategy.resample(&population, sampler.stream(), offspring)
+}
+
+/// Fills the columns of `particles`, which are empty.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn show<C: Colour, V: Variant>(
+    vertices: &Vertices<C, V>,
+    wanted: Scalar,
+    scope: Scope,
+    samples: u32,
+    particles: &mut Particles,
+) {
+    let scalar = |spectrum: C::Spectrum| match wanted {
+        Scalar::Mean => spectrum.mean(),
+        Scalar::Maximum => spectrum.max_component(),
+    };
+    for (&throughput, bsdf) in vertices.throughput.iter().zip(&vertices.bsdf) {
+        let mut importance = scalar(throughput);
+        if V::REFRACTS {
+            // As Mitsuba's roulette: light is not less important for being compressed.
+            importance *= bsdf.refraction().squared_index;
+        }
+        particles.importance.push(importance);
+        particles.albedo.push(scalar(bsdf.albedo()));
+        particles.shininess.push(bsdf.shininess());
+    }
+    match scope {
+        Scope::Particle | Scope::CameraPath => particles.group.extend_from_slice(&vertices.path),
+        Scope::Pixel => {
+            for &path in &vertices.path {
+                particles.group.push(path / samples);
+            }
+        }
+        Scope::Tile => particles.group.resize(vertices.len(), 0),
+    }
 }

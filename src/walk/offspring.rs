@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use super::{ExpectedCount, Population, Rounding, WalkReport};
-use crate::room::{make_room, with_room};
+use crate::room::{make_room, resize};
 use crate::sampling::RandomStream;
 
 /// One particle of the next generation, at the vertex of its parent and about to choose its direction.
@@ -64,18 +64,14 @@ impl Offspring {
 
     /// Room for one wish per particle of a population, with unspecified contents.
     pub(super) fn wishes_mut(&mut self, particles: usize) -> &mut [f32] {
-        let room = with_room(particles);
-        self.wishes.reserve(room.saturating_sub(self.wishes.len()));
-        self.wishes.resize(particles, 0.0);
+        resize(&mut self.wishes, particles);
         &mut self.wishes
     }
 
     /// Turns the wishes into expected counts that keep the estimator unbiased whatever was wished:
     /// zero exactly for the particles that do not matter, and for those with impossible numbers, which are reported.
     pub(super) fn settle(&mut self, population: &Population) -> WalkReport {
-        make_room(&mut self.expected, population.len());
-        self.expected
-            .resize(population.len(), ExpectedCount::default());
+        resize(&mut self.expected, population.len());
         if settle(population, &self.wishes, &mut self.expected) {
             WalkReport::default()
         } else {
