@@ -41,21 +41,23 @@ impl<const N: usize> Wavelengths<N> {
     /// Appends `count` of them, at most [`CHUNK`], each drawn by [`Self::sample`] from its number `u`.
     #[inline(always)]
     pub(super) fn sample_each(u: &[f32; CHUNK], count: usize, drawn: &mut Vec<Self>) {
-        // One loop over the wavelengths of all: those of one do not fill a vector register.
-        let (mut rotated, mut nm, mut pdf) =
-            ([[0.0; N]; CHUNK], [[0.0; N]; CHUNK], [[0.0; N]; CHUNK]);
-        for (rotated, &u) in rotated.iter_mut().zip(u) {
-            for i in 0..N {
-                rotated[i] = rotation::<N>(u, i);
+        // One loop over the wavelengths of several: those of one do not fill a vector register.
+        const LANES: usize = 16;
+        for u in u[..count].chunks(LANES) {
+            let mut rotated = [[0.0; N]; LANES];
+            for (rotated, &u) in rotated.iter_mut().zip(u) {
+                for i in 0..N {
+                    rotated[i] = rotation::<N>(u, i);
+                }
             }
-        }
-        let rotated = rotated.as_flattened();
-        let (all_nm, all_pdf) = (nm.as_flattened_mut(), pdf.as_flattened_mut());
-        for i in 0..N * CHUNK {
-            (all_nm[i], all_pdf[i]) = sample_visible(rotated[i]);
-        }
-        for (&nm, &pdf) in nm.iter().zip(&pdf).take(count) {
-            drawn.push(Self { nm, pdf });
+            let (mut nm, mut pdf) = ([[0.0; N]; LANES], [[0.0; N]; LANES]);
+            let (all_nm, all_pdf) = (nm.as_flattened_mut(), pdf.as_flattened_mut());
+            for (i, &u) in rotated.as_flattened().iter().enumerate() {
+                (all_nm[i], all_pdf[i]) = sample_visible(u);
+            }
+            for (&nm, &pdf) in nm.iter().zip(&pdf).take(u.len()) {
+                drawn.push(Self { nm, pdf });
+            }
         }
     }
 

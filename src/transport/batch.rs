@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::variant::Variant;
 use crate::embree::{Hits, Rays};
 use crate::lanes::VectorColumn;
-use crate::room::make_room;
+use crate::room::{make_room, resize};
 use crate::sampling::{SequencePoint, SolidAnglePdf};
 use crate::scene::{HitCoordinates, Refraction};
 use crate::spectrum::Colour;
@@ -211,11 +211,11 @@ impl<C: Colour> ShadowRays<C> {
 }
 
 impl Particles {
-    /// Empties the columns and makes room for `count` particles.
-    pub fn restart(&mut self, count: usize) {
-        make_room(&mut self.importance, count);
-        make_room(&mut self.albedo, count);
-        make_room(&mut self.shininess, count);
-        make_room(&mut self.group, count);
+    /// Makes the columns as long as there are particles; what they hold is unspecified.
+    pub fn resize(&mut self, count: usize) {
+        resize(&mut self.importance, count);
+        resize(&mut self.albedo, count);
+        resize(&mut self.shininess, count);
+        resize(&mut self.group, count);
     }
 }

@@ -20,7 +20,7 @@ pub(super) fn decide<C: Colour, V: Variant>(
     sampler: &mut Sampler,
     offspring: &mut Offspring,
 ) -> WalkReport {
-    particles.restart(vertices.len());
+    particles.resize(vertices.len());
     show(
         vertices,
         strategy.scalar(),
@@ -39,7 +39,7 @@ pub(super) fn decide<C: Colour, V: Variant>(
     strategy.resample(&population, sampler.stream(), offspring)
 }
 
-/// Fills the columns of `particles`, which are empty.
+/// Fills the columns of `particles`, which are as long as `vertices`.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -55,23 +55,28 @@ fn show<C: Colour, V: Variant>(
         Scalar::Mean => spectrum.mean(),
         Scalar::Maximum => spectrum.max_component(),
     };
-    for (&throughput, bsdf) in vertices.throughput.iter().zip(&vertices.bsdf) {
-        let mut importance = scalar(throughput);
-        if V::REFRACTS {
-            // As Mitsuba's roulette: light is not less important for being compressed.
-            importance *= bsdf.refraction().squared_index;
+    for (importance, &throughput) in particles.importance.iter_mut().zip(&vertices.throughput) {
+        *importance = scalar(throughput);
+    }
+    if V::REFRACTS {
+        // As Mitsuba's roulette: light is not less important for being compressed.
+        for (importance, bsdf) in particles.importance.iter_mut().zip(&vertices.bsdf) {
+            *importance *= bsdf.refraction().squared_index;
         }
-        particles.importance.push(importance);
-        particles.albedo.push(scalar(bsdf.albedo()));
-        particles.shininess.push(bsdf.shininess());
+    }
+    for (albedo, bsdf) in particles.albedo.iter_mut().zip(&vertices.bsdf) {
+        *albedo = scalar(bsdf.albedo());
+    }
+    for (shininess, bsdf) in particles.shininess.iter_mut().zip(&vertices.bsdf) {
+        *shininess = bsdf.shininess();
     }
     match scope {
-        Scope::Particle | Scope::CameraPath => particles.group.extend_from_slice(&vertices.path),
+        Scope::Particle | Scope::CameraPath => particles.group.copy_from_slice(&vertices.path),
         Scope::Pixel => {
-            for &path in &vertices.path {
-                particles.group.push(path / samples);
+            for (group, path) in particles.group.iter_mut().zip(&vertices.path) {
+                *group = path / samples;
             }
         }
-        Scope::Tile => particles.group.resize(vertices.len(), 0),
+        Scope::Tile => particles.group.fill(0),
     }
 }

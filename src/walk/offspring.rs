@@ -87,7 +87,8 @@ impl Offspring {
         random: &mut RandomStream,
     ) {
         let children: ExpectedCount = self.expected.iter().copied().sum();
-        make_room(&mut self.children, children.whole() as usize + 1);
+        let children = (children.whole() as usize + 1).max(self.expected.len());
+        make_room(&mut self.children, children);
         rounding.draw(&self.expected, population, random, &mut self.children);
     }
 }
