@@ -30,22 +30,48 @@ const SRGB_FROM_XYZ: [[f64; 3]; 3] = [
 /// Linear sRGB of the normalised XYZ values (1, 1, 1): the equal-energy illuminant E.
 pub(super) const ILLUMINANT_E: [f64; 3] = srgb_from_xyz([1.0, 1.0, 1.0]);
 
-/// The colour matching functions seen as linear sRGB and normalised, per nm: see [`matching_srgb`].
-static MATCHING_SRGB: [[f32; 3]; ENTRIES] = {
-    let mut table = [[0.0; 3]; ENTRIES];
+/// The colour matching functions seen as linear sRGB and normalised, per nm, from one of the CIE's entries to the next: see
+/// [`matching_srgb`]. The fourth channel is nothing: so each is one vector.
+#[derive(Clone, Copy)]
+#[repr(C, align(32))]
+struct MatchingInterval {
+    value: [f32; 4],
+    /// What is added on the way to the next entry.
+    difference: [f32; 4],
+}
+
+static MATCHING_SRGB: [MatchingInterval; ENTRIES - 1] = {
+    let nothing = MatchingInterval {
+        value: [0.0; 4],
+        difference: [0.0; 4],
+    };
+    let mut table = [nothing; ENTRIES - 1];
     let mut i = 0;
-    while i < ENTRIES {
-        let [x, y, z] = CIE_1931[i];
-        let [r, g, b] = srgb_from_xyz([x as f64, y as f64, z as f64]);
-        table[i] = [
-            (r * Y_NORMALISATION) as f32,
-            (g * Y_NORMALISATION) as f32,
-            (b * Y_NORMALISATION) as f32,
-        ];
+    while i < ENTRIES - 1 {
+        let (here, next) = (
+            normalised_srgb(CIE_1931[i]),
+            normalised_srgb(CIE_1931[i + 1]),
+        );
+        let mut channel = 0;
+        while channel < 3 {
+            table[i].value[channel] = here[channel];
+            table[i].difference[channel] = next[channel] - here[channel];
+            channel += 1;
+        }
         i += 1;
     }
     table
 };
+
+/// The colour of an entry of the CIE's table.
+const fn normalised_srgb([x, y, z]: [f32; 3]) -> [f32; 3] {
+    let [r, g, b] = srgb_from_xyz([x as f64, y as f64, z as f64]);
+    [
+        (r * Y_NORMALISATION) as f32,
+        (g * Y_NORMALISATION) as f32,
+        (b * Y_NORMALISATION) as f32,
+    ]
+}
 
 /// Linear sRGB (unbounded) of CIE XYZ.
 const fn srgb_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
@@ -62,9 +88,16 @@ const fn srgb_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
 /// [`WAVELENGTH_MIN`]`..=`[`WAVELENGTH_MAX`].
 #[inline(always)]
 pub(super) fn matching_srgb(nm: f32) -> [f32; 3] {
+    let [r, g, b, _] = matching_srgb_vector(nm);
+    [r, g, b]
+}
+
+/// [`matching_srgb`] and 0.
+#[inline(always)]
+pub(super) fn matching_srgb_vector(nm: f32) -> [f32; 4] {
     let (entry, fraction) = locate(nm);
-    let (before, after) = (MATCHING_SRGB[entry], MATCHING_SRGB[entry + 1]);
-    std::array::from_fn(|i| before[i] + fraction * (after[i] - before[i]))
+    let MatchingInterval { value, difference } = MATCHING_SRGB[entry];
+    std::array::from_fn(|i| value[i] + fraction * difference[i])
 }
 
 /// Spectral radiance of the illuminant D65 of luminance 1 at the wavelength `nm`, which must lie in

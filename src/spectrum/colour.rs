@@ -1,6 +1,6 @@
 //! How colours travel along a path: the engine is one code, generic over this.
 
-use super::cie::matching_srgb;
+use super::cie::matching_srgb_vector;
 use super::curve::SpectralCurve;
 use super::curve_lanes;
 use super::emission_image::{BetweenTexels, EmissionImage};
@@ -18,11 +18,19 @@ pub trait Colour: Copy + Debug + Default + Send + Sync + 'static {
     /// Values of radiometric quantities on a path.
     type Spectrum: SpectrumArithmetic;
 
+    /// What is known of the choice of a path's wavelengths.
+    type WavelengthDraw: Copy + Debug + Send + Sync + 'static;
+
     /// How many uniform numbers [`Self::sample_wavelengths`] makes use of: 0 or 1.
     const RANDOM_NUMBERS: usize;
 
     /// Appends the wavelengths of `count` paths, at most [`CHUNK`], each drawn from its uniform number `u` in [0, 1).
-    fn sample_wavelengths(u: &[f32; CHUNK], count: usize, drawn: &mut Vec<Self::Wavelengths>);
+    fn sample_wavelengths(
+        u: &[f32; CHUNK],
+        count: usize,
+        drawn: &mut Vec<Self::Wavelengths>,
+        draws: &mut Vec<Self::WavelengthDraw>,
+    );
 
     /// The values of a colour of the scene for a path with `wavelengths`.
     fn evaluate(curve: &SpectralCurve, wavelengths: &Self::Wavelengths) -> Self::Spectrum;
@@ -49,7 +57,11 @@ pub trait Colour: Copy + Debug + Default + Send + Sync + 'static {
 
     /// The linear sRGB colour of a path's radiance: an unbiased estimate over the choice of the wavelengths, with
     /// components that may be negative.
-    fn to_rgb(radiance: Self::Spectrum, wavelengths: &Self::Wavelengths) -> [f32; 3];
+    fn to_rgb(
+        radiance: Self::Spectrum,
+        wavelengths: &Self::Wavelengths,
+        draw: Self::WavelengthDraw,
+    ) -> [f32; 3];
 }
 
 /// Three channels, linear sRGB, each multiplied by itself.
@@ -58,12 +70,19 @@ pub struct Rgb;
 
 impl Colour for Rgb {
     type Wavelengths = ();
+    type WavelengthDraw = ();
     type Spectrum = Spectrum<3>;
     const RANDOM_NUMBERS: usize = 0;
 
     #[inline]
-    fn sample_wavelengths(_u: &[f32; CHUNK], count: usize, drawn: &mut Vec<()>) {
+    fn sample_wavelengths(
+        _u: &[f32; CHUNK],
+        count: usize,
+        drawn: &mut Vec<()>,
+        draws: &mut Vec<()>,
+    ) {
         drawn.resize(drawn.len() + count, ());
+        draws.resize(draws.len() + count, ());
     }
 
     #[inline(always)]
@@ -96,7 +115,7 @@ impl Colour for Rgb {
     }
 
     #[inline]
-    fn to_rgb(radiance: Spectrum<3>, _wavelengths: &()) -> [f32; 3] {
+    fn to_rgb(radiance: Spectrum<3>, _wavelengths: &(), _draw: ()) -> [f32; 3] {
         radiance.0
     }
 }
@@ -107,12 +126,20 @@ pub struct Spectral<const N: usize>;
 
 impl<const N: usize> Colour for Spectral<N> {
     type Wavelengths = Wavelengths<N>;
+    /// The uniform number from which they were drawn.
+    type WavelengthDraw = f32;
     type Spectrum = Spectrum<N>;
     const RANDOM_NUMBERS: usize = 1;
 
     #[inline(always)]
-    fn sample_wavelengths(u: &[f32; CHUNK], count: usize, drawn: &mut Vec<Wavelengths<N>>) {
+    fn sample_wavelengths(
+        u: &[f32; CHUNK],
+        count: usize,
+        drawn: &mut Vec<Wavelengths<N>>,
+        draws: &mut Vec<f32>,
+    ) {
         Wavelengths::sample_each(u, count, drawn);
+        draws.extend_from_slice(&u[..count]);
     }
 
     #[inline(always)]
@@ -147,15 +174,20 @@ impl<const N: usize> Colour for Spectral<N> {
     }
 
     #[inline(always)]
-    fn to_rgb(radiance: Spectrum<N>, wavelengths: &Wavelengths<N>) -> [f32; 3] {
-        let mut rgb = [0.0; 3];
+    fn to_rgb(radiance: Spectrum<N>, wavelengths: &Wavelengths<N>, draw: f32) -> [f32; 3] {
+        let pdf = Wavelengths::<N>::pdf(draw);
+        let mut rgb = [0.0; 4];
         for i in 0..N {
-            let estimate = radiance[i] / (wavelengths.pdf()[i] * N as f32);
-            for (sum, weight) in rgb.iter_mut().zip(matching_srgb(wavelengths.nm()[i])) {
+            let estimate = radiance[i] / (pdf[i] * N as f32);
+            for (sum, weight) in rgb
+                .iter_mut()
+                .zip(matching_srgb_vector(wavelengths.nm()[i]))
+            {
                 *sum += weight * estimate;
             }
         }
-        rgb
+        let [r, g, b, _] = rgb;
+        [r, g, b]
     }
 }
 
@@ -168,10 +200,11 @@ mod tests {
         let paths = 20_000;
         let mut sum = [0.0f64; 3];
         for path in 0..paths {
-            let wavelengths = Wavelengths::<N>::sample((path as f32 + 0.5) / paths as f32);
-            for (sum, channel) in sum
-                .iter_mut()
-                .zip(Spectral::to_rgb(radiance(&wavelengths), &wavelengths))
+            let draw = (path as f32 + 0.5) / paths as f32;
+            let wavelengths = Wavelengths::<N>::sample(draw);
+            for (sum, channel) in
+                sum.iter_mut()
+                    .zip(Spectral::to_rgb(radiance(&wavelengths), &wavelengths, draw))
             {
                 *sum += f64::from(channel);
             }
@@ -225,7 +258,7 @@ mod tests {
     fn both_ways_see_the_same_measured_lamp() {
         let entries = [(400.0, 0.0), (500.0, 8.0), (600.0, 15.6), (700.0, 18.4)];
         let lamp = SpectralCurve::tabulated_emission(&entries).unwrap();
-        let rgb = Rgb::to_rgb(Rgb::evaluate(&lamp, &()), &());
+        let rgb = Rgb::to_rgb(Rgb::evaluate(&lamp, &()), &(), ());
         assert_close(rgb, lamp.rgb(), 1e-9);
         assert_close(
             mean_colour::<4>(|w| Spectral::evaluate(&lamp, w)),
@@ -236,9 +269,11 @@ mod tests {
 
     #[test]
     fn one_path_has_mitsubas_colour() {
-        // mi.spectrum_to_srgb([1, 2, 3, 4], [450, 520, 555, 601]); the density of `at` is 1.
+        // mi.spectrum_to_srgb([1, 2, 3, 4], [450, 520, 555, 601]), where each has a density of 1.
         let wavelengths = Wavelengths::at([450.0, 520.0, 555.0, 601.0]);
-        let rgb = Spectral::to_rgb(Spectrum([1.0, 2.0, 3.0, 4.0]), &wavelengths);
+        let draw = 0.25;
+        let radiance = Spectrum([1.0, 2.0, 3.0, 4.0]) * Spectrum(Wavelengths::pdf(draw));
+        let rgb = Spectral::to_rgb(radiance, &wavelengths, draw);
         assert_close(rgb, [0.020_087_6, 0.016_487_2, 0.002_326_41], 1e-6);
     }
 }

@@ -13,11 +13,10 @@ const TANH_MIN: f64 = -0.856_910_625_469_828;
 /// tanh(STEEPNESS * (WAVELENGTH_MAX - PEAK)).
 const TANH_MAX: f64 = 0.970_591_346_940_269_8;
 
-/// `N` wavelengths and the probability density with which each was drawn.
+/// `N` wavelengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wavelengths<const N: usize> {
     nm: [f32; N],
-    pdf: [f32; N],
 }
 
 impl<const N: usize> Wavelengths<N> {
@@ -28,14 +27,15 @@ impl<const N: usize> Wavelengths<N> {
     /// [`WAVELENGTH_MIN`]`..=`[`WAVELENGTH_MAX`] (Radziszewski et al. 2009).
     #[inline(always)]
     pub fn sample(u: f32) -> Self {
-        let mut drawn = Self {
-            nm: [0.0; N],
-            pdf: [0.0; N],
-        };
-        for i in 0..N {
-            (drawn.nm[i], drawn.pdf[i]) = sample_visible(rotation::<N>(u, i));
+        Self {
+            nm: std::array::from_fn(|i| wavelength_at(tanh_of(rotation::<N>(u, i)))),
         }
-        drawn
+    }
+
+    /// The probability density with which each of those was drawn, per nm.
+    #[inline(always)]
+    pub fn pdf(u: f32) -> [f32; N] {
+        std::array::from_fn(|i| density_at(tanh_of(rotation::<N>(u, i))))
     }
 
     /// Appends `count` of them, at most [`CHUNK`], each drawn by [`Self::sample`] from its number `u`.
@@ -50,32 +50,25 @@ impl<const N: usize> Wavelengths<N> {
                     rotated[i] = rotation::<N>(u, i);
                 }
             }
-            let (mut nm, mut pdf) = ([[0.0; N]; LANES], [[0.0; N]; LANES]);
-            let (all_nm, all_pdf) = (nm.as_flattened_mut(), pdf.as_flattened_mut());
-            for (i, &u) in rotated.as_flattened().iter().enumerate() {
-                (all_nm[i], all_pdf[i]) = sample_visible(u);
+            let mut nm = rotated;
+            for nm in nm.as_flattened_mut() {
+                *nm = wavelength_at(tanh_of(*nm));
             }
-            for (&nm, &pdf) in nm.iter().zip(&pdf).take(u.len()) {
-                drawn.push(Self { nm, pdf });
+            for &nm in &nm[..u.len()] {
+                drawn.push(Self { nm });
             }
         }
     }
 
-    /// Chosen wavelengths, in nm, with densities of 1 per nm.
+    /// Chosen wavelengths, in nm.
     pub(crate) fn at(nm: [f32; N]) -> Self {
-        Self { nm, pdf: [1.0; N] }
+        Self { nm }
     }
 
     /// The wavelengths, in nm; the hero first.
     #[inline]
     pub fn nm(&self) -> &[f32; N] {
         &self.nm
-    }
-
-    /// The probability density of each wavelength, per nm.
-    #[inline]
-    pub fn pdf(&self) -> &[f32; N] {
-        &self.pdf
     }
 }
 
@@ -133,24 +126,36 @@ fn ln(x: f32) -> f32 {
     m + tail + LN_2[0] * exponent
 }
 
-/// The wavelength in nm at the quantile `u` in [0, 1], and its density per nm.
+/// tanh of the scaled distance from the peak at the quantile `u` in [0, 1].
 #[inline(always)]
-fn sample_visible(u: f32) -> (f32, f32) {
+fn tanh_of(u: f32) -> f32 {
     const RANGE: f32 = (TANH_MAX - TANH_MIN) as f32;
-    const NORMALISATION: f32 = (STEEPNESS / (TANH_MAX - TANH_MIN)) as f32;
-    // tanh of the scaled distance from the peak: 1/cosh² is 1 - tanh².
-    let tanh = TANH_MIN as f32 + RANGE * u;
+    TANH_MIN as f32 + RANGE * u
+}
+
+/// The wavelength in nm at a scaled distance from the peak with this `tanh`.
+#[inline(always)]
+fn wavelength_at(tanh: f32) -> f32 {
     let nm = PEAK as f32 + atanh(tanh) * (1.0 / STEEPNESS) as f32;
-    (
-        nm.clamp(WAVELENGTH_MIN, WAVELENGTH_MAX),
-        NORMALISATION * (1.0 - tanh * tanh),
-    )
+    nm.clamp(WAVELENGTH_MIN, WAVELENGTH_MAX)
+}
+
+/// The density there, per nm: 1/cosh² is 1 - tanh².
+#[inline(always)]
+fn density_at(tanh: f32) -> f32 {
+    const NORMALISATION: f32 = (STEEPNESS / (TANH_MAX - TANH_MIN)) as f32;
+    NORMALISATION * (1.0 - tanh * tanh)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+    /// The wavelength at the quantile `u`, and its density.
+    fn sample_visible(u: f32) -> (f32, f32) {
+        (wavelength_at(tanh_of(u)), density_at(tanh_of(u)))
+    }
 
     /// The density of Radziszewski et al. 2009, written down once more in its usual form.
     fn density(nm: f64) -> f64 {
@@ -218,7 +223,10 @@ mod tests {
         let drawn = Wavelengths::<4>::sample(0.6);
         for (i, quantile) in [0.6, 0.85, 0.1, 0.35].into_iter().enumerate() {
             let (nm, pdf) = sample_visible(quantile);
-            assert!((drawn.nm()[i] - nm).abs() < 1e-3 && (drawn.pdf()[i] / pdf - 1.0).abs() < 1e-5);
+            assert!(
+                (drawn.nm()[i] - nm).abs() < 1e-3
+                    && (Wavelengths::<4>::pdf(0.6)[i] / pdf - 1.0).abs() < 1e-5
+            );
         }
     }
 
@@ -245,7 +253,7 @@ mod tests {
             let drawn = Wavelengths::<4>::sample(u);
             for i in 0..4 {
                 assert!((WAVELENGTH_MIN..=WAVELENGTH_MAX).contains(&drawn.nm()[i]));
-                assert!(drawn.pdf()[i] > 2e-4);
+                assert!(Wavelengths::<4>::pdf(u)[i] > 2e-4);
             }
         }
     }

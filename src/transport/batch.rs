@@ -15,6 +15,8 @@ use crate::spectrum::Colour;
 pub(super) struct CameraPaths<C: Colour> {
     /// The wavelengths that the path carries.
     pub wavelengths: Vec<C::Wavelengths>,
+    /// How they were chosen.
+    pub wavelength_draw: Vec<C::WavelengthDraw>,
     /// What has arrived so far at the camera.
     pub radiance: Vec<C::Spectrum>,
     /// What the curves of the [`EmissionTable`](super::emission_table::EmissionTable) are at those wavelengths: all of one path
@@ -94,6 +96,7 @@ impl<C: Colour> CameraPaths<C> {
     pub fn new() -> Self {
         Self {
             wavelengths: Vec::new(),
+            wavelength_draw: Vec::new(),
             radiance: Vec::new(),
             emission: Vec::new(),
             filter_weight: Vec::new(),
@@ -103,6 +106,7 @@ impl<C: Colour> CameraPaths<C> {
     /// Empties the paths and makes room for `count`.
     pub fn restart(&mut self, count: usize) {
         make_room(&mut self.wavelengths, count);
+        make_room(&mut self.wavelength_draw, count);
         make_room(&mut self.radiance, count);
         make_room(&mut self.filter_weight, count);
     }

@@ -58,7 +58,12 @@ pub(super) fn start<C: Colour, V: Variant>(
             sampler.fill(&points, chunk.len(), Use::Lens, lens_numbers.each_mut());
         }
         let [film_u, film_v, wavelength_u] = &numbers;
-        C::sample_wavelengths(wavelength_u, chunk.len(), &mut paths.wavelengths);
+        C::sample_wavelengths(
+            wavelength_u,
+            chunk.len(),
+            &mut paths.wavelengths,
+            &mut paths.wavelength_draw,
+        );
         for lane in 0..chunk.len() {
             let (x, y) = tile.position(pixel as usize);
             advance(&mut pixel, &mut sample, job.samples);

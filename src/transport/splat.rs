@@ -80,5 +80,6 @@ fn sample<C: Colour>(
         return [0.0; 3];
     }
     let weight = f64::from(paths.filter_weight[path]);
-    C::to_rgb(radiance, &paths.wavelengths[path]).map(|value| f64::from(value) * weight)
+    let draw = paths.wavelength_draw[path];
+    C::to_rgb(radiance, &paths.wavelengths[path], draw).map(|value| f64::from(value) * weight)
 }
