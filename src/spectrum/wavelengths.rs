@@ -46,9 +46,7 @@ impl<const N: usize> Wavelengths<N> {
         for u in u[..count].chunks(LANES) {
             let mut rotated = [[0.0; N]; LANES];
             for (rotated, &u) in rotated.iter_mut().zip(u) {
-                for i in 0..N {
-                    rotated[i] = rotation::<N>(u, i);
-                }
+                *rotated = std::array::from_fn(|i| rotation::<N>(u, i));
             }
             let mut nm = rotated;
             for nm in nm.as_flattened_mut() {

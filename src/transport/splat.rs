@@ -74,7 +74,7 @@ fn sample<C: Colour>(
 ) -> [f64; 3] {
     let radiance = paths.radiance[path];
     let components = radiance.components();
-    let is_radiance = |sound, &value: &f32| sound & (value >= 0.0) & (value <= f32::MAX);
+    let is_radiance = |sound, &value: &f32| sound & (0.0..=f32::MAX).contains(&value);
     if !components.iter().fold(true, is_radiance) {
         dropped.count(components);
         return [0.0; 3];

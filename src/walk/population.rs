@@ -73,7 +73,7 @@ impl Particle {
     /// Whether the numbers can be those of a particle: finite and not negative, but for a mirror's shininess.
     #[inline(always)]
     pub fn is_sound(self) -> bool {
-        let finite = |number: f32| (number >= 0.0) & (number <= f32::MAX);
+        let finite = |number: f32| (0.0..=f32::MAX).contains(&number);
         finite(self.importance) & finite(self.albedo) & (self.shininess >= 0.0)
     }
 
