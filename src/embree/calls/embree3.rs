@@ -32,8 +32,10 @@ fn context(coherence: Coherence) -> raw::RTCIntersectContext {
 /// processor with AVX-512: the compiler keeps a mask of 16 bits and reads 64 back. Such scenes are
 /// therefore traced as if the rays were incoherent; the answer is the same.
 pub fn occlusion_coherence(scene: &Scene, asked: Coherence) -> Coherence {
-    let options = scene.options();
-    if options.robust && options.compact {
+    if scene
+        .all_options()
+        .any(|options| options.robust && options.compact)
+    {
         Coherence::Incoherent
     } else {
         asked
@@ -135,9 +137,14 @@ fn ray_pointers(rays: &mut Rays) -> raw::RTCRayNp {
     }
 }
 
-/// The arrays of the hits; the instance is not asked for.
+/// The arrays of the hits; the instance is asked for where there are any.
 fn hit_pointers(hits: &mut Hits) -> raw::RTCHitNp {
     let [normal_x, normal_y, normal_z] = hits.normal.each_mut().map(|axis| axis.as_mut_ptr());
+    let instances = if hits.instance_id.is_empty() {
+        null_mut()
+    } else {
+        hits.instance_id.as_mut_ptr()
+    };
     raw::RTCHitNp {
         Ng_x: normal_x,
         Ng_y: normal_y,
@@ -146,7 +153,7 @@ fn hit_pointers(hits: &mut Hits) -> raw::RTCHitNp {
         v: hits.v.as_mut_ptr(),
         primID: hits.primitive_id.as_mut_ptr(),
         geomID: hits.geometry_id.as_mut_ptr(),
-        instID: [null_mut()],
+        instID: [instances],
     }
 }
 

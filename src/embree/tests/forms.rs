@@ -113,6 +113,7 @@ pub(super) fn answers<const K: usize>(packets: &[RayHitPacket<K>], count: usize)
                     v: hit.v[lane],
                     primitive_id: hit.primitive_id[lane],
                     geometry_id: hit.geometry_id[lane],
+                    instance_id: hit.instance_id[lane],
                     ..Hit1::MISS
                 },
                 tfar: ray.tfar[lane],
@@ -198,6 +199,7 @@ fn intersect_stream(scene: &Scene, rays: &[Ray1], coherence: Coherence) -> Vec<A
                 v: hits.uv(i)[1],
                 primitive_id: hits.primitive_id(i),
                 geometry_id: hits.geometry_id(i),
+                instance_id: hits.instance_id(i),
                 ..Hit1::MISS
             },
             tfar: stream.tfar(i),
