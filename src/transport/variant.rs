@@ -6,10 +6,11 @@ use std::fmt::Debug;
 use glam::Vec3;
 
 use super::batch::Segments;
+use super::engine::Engine;
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{Sampler, SequencePoint};
 use crate::scene::{
-    BsdfSamples, BsdfValues, HitCoordinates, Material, Refraction, Shape, Side, SurfaceLanes,
+    BsdfSamples, BsdfValues, Material, Refraction, Shape, Side, SurfaceLanes, SurfaceParameters,
     SurfacePoint,
 };
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -24,6 +25,9 @@ pub(super) trait Variant: Send + Sync + 'static {
 
     /// Whether light may be refracted.
     const REFRACTS: bool;
+
+    /// Whether surfaces may stand in instances.
+    const INSTANCES: bool;
 }
 
 /// A path arrives at a surface. Everything else about it is found by those who ask: a variant does not pay for what it does not
@@ -39,6 +43,8 @@ pub(super) struct Arrival<'a, C: Colour> {
     pub wavelengths: &'a C::Wavelengths,
     /// How often it has been scattered before.
     pub depth: u32,
+    /// The engine, for those who ask about instances.
+    pub engine: &'a Engine,
     /// The paths that arrive, and which of them this is.
     pub segments: &'a Segments<C>,
     /// Its index among those.
@@ -56,10 +62,14 @@ impl<C: Colour> Arrival<'_, C> {
         self.points.get(self.lane)
     }
 
-    /// The same in the terms of the intersection layer.
+    /// Where it lies on its shape.
     #[inline]
-    pub fn hit(&self) -> HitCoordinates {
-        self.segments.hit(self.index)
+    pub fn parameters(&self) -> SurfaceParameters<'_> {
+        let (geometry, hit) = (&self.shape.geometry, self.segments.hit(self.index));
+        match self.engine.instance(self.segments, self.index) {
+            Some(instance) => instance.parameters(geometry, &hit),
+            None => geometry.parameters(&hit, &self.point()),
+        }
     }
 
     /// The unit direction in which the path came, in world space.

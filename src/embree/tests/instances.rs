@@ -121,7 +121,10 @@ impl Village {
         }
         let [a, b, c] = corners.map(glam::Vec3::from);
         let normal = (b - a).cross(c - a);
-        assert!((normal - glam::Vec3::from(hit.normal)).length() < 1e-5, "{what}");
+        assert!(
+            (normal - glam::Vec3::from(hit.normal)).length() < 1e-5,
+            "{what}"
+        );
     }
 }
 

@@ -1,0 +1,158 @@
+//! `instance`: the shapes of a group in another place.
+//!
+//! | parameter | type | meaning | default |
+//! |---|---|---|---|
+//! | (nested) | shape | the `shapegroup` that is shown: a `<ref>` to one, or one nested here | required |
+//! | `to_world` | transform | any affine transform with an inverse, from the group's space to the world | identity |
+//!
+//! Outer sides stay outer sides, even under a transform that mirrors. An instance has no bsdf of its own: materials belong to the
+//! shapes of the group. In memory, a group is there once, however many instances show it.
+
+use glam::{DMat3, DMat4, Mat3, Vec3};
+
+use super::extent::{FARTHEST, is_near};
+use super::{Geometry, HitCoordinates, ShapeGroup, SurfaceParameters, SurfacePoint};
+use crate::scene::ShapeGroupId;
+use crate::scene::error::SceneError;
+use crate::scene::load::Loader;
+use crate::scene::xml::{Class, Object};
+
+/// A group of shapes in its place in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instance {
+    /// The group that it shows.
+    pub group: ShapeGroupId,
+    /// Where the axes of the group's space go.
+    axes: Mat3,
+    /// Where the origin of the group's space goes.
+    origin: Vec3,
+    /// The transform of normals, but for their length.
+    normals: Mat3,
+    /// By how much coordinates can grow on the way through the group's space and back: |A| |A⁻¹|, element by element.
+    spread: Mat3,
+}
+
+/// A bound for the relative error of a point that goes from the world to the group's space, or back. A product of a matrix and a
+/// vector, and the inverse that the intersection layer makes of the matrix, take fewer than 64 roundings.
+const ROUNDING: f32 = 32.0 * f32::EPSILON;
+
+impl Instance {
+    /// The group `group` moved by `to_world`; `None` if that has no inverse in single precision, in which rays are traced.
+    pub fn new(group: ShapeGroupId, to_world: DMat4) -> Option<Self> {
+        let exact = DMat3::from_mat4(to_world);
+        let (axes, origin) = (exact.as_mat3(), to_world.w_axis.truncate().as_vec3());
+        let invertible = axes.determinant().is_normal() && axes.inverse().is_finite();
+        if !invertible || !origin.is_finite() {
+            return None;
+        }
+        let inverse = exact.inverse();
+        let greatest = inverse.to_cols_array().map(f64::abs);
+        let greatest = greatest.into_iter().fold(0.0, f64::max);
+        Some(Self {
+            group,
+            axes,
+            origin,
+            normals: (inverse.transpose() * (1.0 / greatest)).as_mat3(),
+            spread: (exact.abs() * inverse.abs()).as_mat3(),
+        })
+    }
+
+    /// The instance that `object` states, its group loaded by `loader` if it is a new one.
+    pub(in crate::scene) fn load(object: &Object, loader: &mut Loader) -> Result<Self, SceneError> {
+        let Some(shown) = object.child(Class::Shape)? else {
+            return Err(object.error(
+                "the `instance` needs a `shapegroup` to show, such as <ref id=\"...\"/> of one",
+            ));
+        };
+        if shown.object.plugin != "shapegroup" {
+            let message = format!(
+                "an `instance` shows a `shapegroup`, not the {}",
+                shown.object
+            );
+            return Err(SceneError::at(&shown.location, message));
+        }
+        let to_world = object.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        let group = loader.group(&shown.object)?;
+        object.finish()?;
+        let Some(instance) = Self::new(group, to_world) else {
+            return Err(object.parameter_error(
+                "to_world",
+                "`to_world` of the `instance` has no inverse in single precision: it flattens the group, or makes it too large or \
+                 too small",
+            ));
+        };
+        if instance.is_within_reach(loader.known_group(group)) {
+            return Ok(instance);
+        }
+        Err(object.error(format!(
+            "this `instance` is too large or too far away: coordinates must be at most {FARTHEST:e}"
+        )))
+    }
+
+    fn is_within_reach(&self, group: &ShapeGroup) -> bool {
+        let mut corners = (0..8).map(|corner| {
+            Vec3::from_array(std::array::from_fn(|axis| {
+                group.bounds[corner >> axis & 1][axis]
+            }))
+        });
+        corners.all(|corner| is_near(self.position(corner)))
+    }
+
+    /// Where the axes of the group's space go, and its origin.
+    pub(crate) fn to_world(&self) -> ([Vec3; 3], Vec3) {
+        let Mat3 {
+            x_axis,
+            y_axis,
+            z_axis,
+        } = self.axes;
+        ([x_axis, y_axis, z_axis], self.origin)
+    }
+
+    #[inline]
+    fn position(&self, local: Vec3) -> Vec3 {
+        self.axes * local + self.origin
+    }
+
+    #[inline]
+    fn normal(&self, local: Vec3) -> Vec3 {
+        (self.normals * local).normalize_or_zero()
+    }
+
+    /// The point of the world that `local`, a point of one of the group's shapes in the group's space, is here.
+    #[inline]
+    pub fn point(&self, local: &SurfacePoint) -> SurfacePoint {
+        SurfacePoint {
+            position: self.position(local.position),
+            geometric_normal: self.normal(local.geometric_normal),
+            shading_normal: self.normal(local.shading_normal),
+        }
+    }
+
+    /// Where a hit on `geometry`, one of the group's shapes, lies on it; directions are in world space.
+    pub fn parameters<'s>(
+        &self,
+        geometry: &'s Geometry,
+        hit: &HitCoordinates,
+    ) -> SurfaceParameters<'s> {
+        let local = geometry.parameters(hit, &geometry.surface(hit));
+        SurfaceParameters {
+            dp_du: self.axes * local.dp_du,
+            dp_dv: self.axes * local.dp_dv,
+            geometric_normal: self.normal(local.geometric_normal),
+            ..local
+        }
+    }
+
+    /// The least distance by which a ray from `point`, one of the instance in world space, must start off the surface, so that
+    /// rounding does not bring it back or to the other side.
+    ///
+    /// Such a ray is moved to the group's space and so rounded in other directions and by other amounts than `point` itself shows:
+    /// where a large translation is added to coordinates that are large the other way, much is lost of a small sum. What is bounded
+    /// here, component by component, is the error of the whole way; the distance is as far as that error reaches along the normal
+    /// (Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, section 6.8).
+    #[inline]
+    pub fn clearance(&self, point: &SurfacePoint) -> f32 {
+        let error = self.spread * (point.position.abs() + self.origin.abs());
+        ROUNDING * error.dot(point.geometric_normal.abs())
+    }
+}
