@@ -68,6 +68,9 @@ pub enum EmbreeError {
     /// An instance of a scene that has instances itself.
     #[error("an instance cannot stand in a scene that is instanced itself")]
     NestedInstance,
+    /// An instance of a scene of another device.
+    #[error("a scene can hold instances of scenes of its own device only")]
+    OtherDevice,
     /// A map of an instance that single precision cannot invert.
     #[error("the transform of an instance has no inverse in single precision")]
     NoInverse,

@@ -69,6 +69,9 @@ impl Instance {
     /// Makes Embree's object of the instance. It traces the scene, so `self` or a clone of it must outlive every scene that the
     /// object is attached to.
     pub(super) fn to_embree(&self, device: &Device) -> Result<GeometryHandle, EmbreeError> {
+        if !self.scene.device().is(device) {
+            return Err(EmbreeError::OtherDevice);
+        }
         let geometry = GeometryHandle::new(device, raw::RTCGeometryType::INSTANCE)?;
         // SAFETY: geometry and scene are alive, and the scene is committed; the matrix has the stated format and is read before
         // the call returns.

@@ -82,7 +82,7 @@ impl SceneBuilder {
     /// Hands the geometry to Embree and builds the tree over it.
     ///
     /// # Errors
-    /// [`EmbreeError::BadBounds`] of a user geometry, or [`EmbreeError::Library`], for example when
+    /// [`EmbreeError::BadBounds`] of a user geometry, [`EmbreeError::OtherDevice`] of an instance, or [`EmbreeError::Library`], for example when
     /// the memory does not suffice.
     pub fn build(self) -> Result<Scene, EmbreeError> {
         let Self {
@@ -198,12 +198,6 @@ impl Scene {
     /// Whether it has instances of other scenes.
     pub fn has_instances(&self) -> bool {
         !self.instanced.is_empty()
-    }
-
-    /// How it was built, and how the scenes were of which it has instances.
-    pub(super) fn all_options(&self) -> impl Iterator<Item = BuildOptions> {
-        let instanced = self.instanced.iter().map(|scene| scene.options);
-        std::iter::once(self.options).chain(instanced)
     }
 
     /// Whether everything traced so far can be relied on. To be asked after a batch of calls, which

@@ -210,3 +210,6 @@ impl UserGeometry for Cylinder {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

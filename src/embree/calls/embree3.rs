@@ -28,14 +28,13 @@ fn context(coherence: Coherence) -> raw::RTCIntersectContext {
 /// How rays can be traced as asked when they ask for occlusion.
 ///
 /// Debian's build of Embree 3.13.5 can hang for ever, or read beyond its stack, when coherent packets
-/// of 16 rays, or streams of them, are tested for occlusion in a scene both robust and compact on a
-/// processor with AVX-512: the compiler keeps a mask of 16 bits and reads 64 back. Such scenes are
-/// therefore traced as if the rays were incoherent; the answer is the same.
+/// of 16 rays, or streams of them, are tested for occlusion on a processor with AVX-512: the compiler
+/// keeps a mask of 16 bits and reads 64 back. It happens in scenes both robust and compact, and in all
+/// scenes with instances. Those are therefore traced as if the rays were incoherent; the answer is the
+/// same.
 pub fn occlusion_coherence(scene: &Scene, asked: Coherence) -> Coherence {
-    if scene
-        .all_options()
-        .any(|options| options.robust && options.compact)
-    {
+    let options = scene.options();
+    if scene.has_instances() || options.robust && options.compact {
         Coherence::Incoherent
     } else {
         asked

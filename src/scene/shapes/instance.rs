@@ -26,34 +26,32 @@ pub struct Instance {
     axes: Mat3,
     /// Where the origin of the group's space goes.
     origin: Vec3,
-    /// The transform of normals, but for their length.
-    normals: Mat3,
-    /// By how much coordinates can grow on the way through the group's space and back: |A| |A⁻¹|, element by element.
-    spread: Mat3,
+    /// The inverse of the map of axes.
+    inverse: Mat3,
 }
 
-/// A bound for the relative error of a point that goes from the world to the group's space, or back. A product of a matrix and a
-/// vector, and the inverse that the intersection layer makes of the matrix, take fewer than 64 roundings.
-const ROUNDING: f32 = 32.0 * f32::EPSILON;
+/// The greatest stretching, and the greatest shrinking, of a group.
+const MOST_SCALED: f32 = 1e15;
+
+/// A bound for the relative error of what is summed up on the way of a point to the group's space or back: the inverse matrix that the
+/// intersection layer makes, its translation, and a product with a vector take fewer than 16 roundings.
+const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
 impl Instance {
     /// The group `group` moved by `to_world`; `None` if that has no inverse in single precision, in which rays are traced.
     pub fn new(group: ShapeGroupId, to_world: DMat4) -> Option<Self> {
         let exact = DMat3::from_mat4(to_world);
         let (axes, origin) = (exact.as_mat3(), to_world.w_axis.truncate().as_vec3());
-        let invertible = axes.determinant().is_normal() && axes.inverse().is_finite();
-        if !invertible || !origin.is_finite() {
-            return None;
-        }
-        let inverse = exact.inverse();
-        let greatest = inverse.to_cols_array().map(f64::abs);
-        let greatest = greatest.into_iter().fold(0.0, f64::max);
-        Some(Self {
+        let is_fine = |matrix: Mat3| {
+            let mut entries = matrix.to_cols_array().into_iter();
+            entries.all(|entry| entry.abs() <= MOST_SCALED)
+        };
+        let is_invertible = axes.determinant().is_normal() && is_fine(axes.inverse());
+        (is_fine(axes) && is_invertible && origin.is_finite()).then(|| Self {
             group,
             axes,
             origin,
-            normals: (inverse.transpose() * (1.0 / greatest)).as_mat3(),
-            spread: (exact.abs() * inverse.abs()).as_mat3(),
+            inverse: exact.inverse().as_mat3(),
         })
     }
 
@@ -115,7 +113,7 @@ impl Instance {
 
     #[inline]
     fn normal(&self, local: Vec3) -> Vec3 {
-        (self.normals * local).normalize_or_zero()
+        transposed(&self.inverse, local).normalize_or_zero()
     }
 
     /// The point of the world that `local`, a point of one of the group's shapes in the group's space, is here.
@@ -147,12 +145,26 @@ impl Instance {
     /// rounding does not bring it back or to the other side.
     ///
     /// Such a ray is moved to the group's space and so rounded in other directions and by other amounts than `point` itself shows:
-    /// where a large translation is added to coordinates that are large the other way, much is lost of a small sum. What is bounded
-    /// here, component by component, is the error of the whole way; the distance is as far as that error reaches along the normal
-    /// (Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, section 6.8).
+    /// where a large translation is added to coordinates that are large the other way, much is lost of a small sum. Bounds of both
+    /// errors, that of `point` in the world and that of the ray in the group's space, component by component, say how far the two
+    /// reach along the normal (Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, section 6.8).
     #[inline]
     pub fn clearance(&self, point: &SurfacePoint) -> f32 {
-        let error = self.spread * (point.position.abs() + self.origin.abs());
-        ROUNDING * error.dot(point.geometric_normal.abs())
+        let (normal, origin) = (point.geometric_normal, self.origin.abs());
+        let local = self.inverse * (point.position - self.origin);
+        let sum = self.axes.abs() * local.abs() + origin;
+        let in_group = self.inverse.abs() * (point.position.abs() + sum);
+        let along_normal = transposed(&self.axes, normal).abs();
+        ROUNDING * (normal.abs().dot(sum) + along_normal.dot(in_group))
     }
+}
+
+/// The product of the transpose of `matrix` and a vector.
+#[inline]
+fn transposed(matrix: &Mat3, vector: Vec3) -> Vec3 {
+    Vec3::new(
+        matrix.x_axis.dot(vector),
+        matrix.y_axis.dot(vector),
+        matrix.z_axis.dot(vector),
+    )
 }
