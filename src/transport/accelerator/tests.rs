@@ -289,12 +289,9 @@ fn wrong_ways(traced: &Traced, to_world: &DMat4, keeps_clearance: bool) -> [u32;
         let out = direction(&mut random);
         let (position, normal) = (met.point.position, met.point.geometric_normal);
         let start = |out: Vec3| match met.instance {
-            Some(instance) => leave_surface_by(
-                instance.clearance(&met.point),
-                position,
-                normal,
-                out,
-            ),
+            Some(instance) if keeps_clearance => {
+                leave_surface_by(instance.clearance(&met.point), position, normal, out)
+            }
             _ => leave_surface(position, normal, out),
         };
         let out = if out.dot(normal) < 0.0 { -out } else { out };
@@ -354,5 +351,89 @@ fn rays_that_leave_instances_go_where_they_should() {
                 assert!(returned > 500, "{plugin}: {returned}");
             }
         }
+    }
+}
+
+/// Numbers of shapes and instances in a scene whose groups have several shapes each.
+#[test]
+fn streams_and_single_rays_name_the_same_shapes() {
+    let at = |x: u32, content: &str| {
+        let transform = format!(r#"<transform name="to_world"><translate x="{x}"/></transform>"#);
+        format!("{content}{transform}</shape>")
+    };
+    let sphere = r#"<shape type="sphere"><float name="radius" value="0.4"/>"#;
+    let rectangle = r#"<shape type="rectangle">"#;
+    let pair = |id: &str, first: &str, second: &str| {
+        let (first, second) = (at(0, first), at(1, second));
+        format!(r#"<shape type="shapegroup" id="{id}">{first}{second}</shape>"#)
+    };
+    let instance = |x, id: &str| at(x, &format!(r#"<shape type="instance"><ref id="{id}"/>"#));
+    let shapes = [
+        pair("a", sphere, rectangle),
+        instance(10, "b"),
+        at(0, rectangle),
+        pair("b", rectangle, sphere),
+        instance(20, "a"),
+        instance(30, "b"),
+        at(40, sphere),
+        pair("unseen", sphere, sphere),
+    ];
+    let traced = Traced::new(&shapes.concat());
+    // Group b is met first, and then a: both follow the two shapes in the world.
+    assert_eq!(traced.scene.shapes.len(), 6);
+    assert_eq!(traced.scene.shapes_in_world().len(), 2);
+    let expected = [
+        (0.0, Some((0, None))),
+        (5.0, None),
+        (9.5, Some((2, Some(0)))),
+        (11.2, Some((3, Some(0)))),
+        (20.2, Some((4, Some(1)))),
+        (21.5, Some((5, Some(1)))),
+        (29.5, Some((2, Some(2)))),
+        (31.2, Some((3, Some(2)))),
+        (40.2, Some((1, None))),
+    ];
+    let (mut rays, mut hits) = (Rays::new(), Hits::new());
+    rays.resize(expected.len());
+    for (i, (x, _)) in expected.iter().enumerate() {
+        rays.set(i, [*x, 0.1, 9.0], [0.0, 0.0, -1.0], 0.0, f32::INFINITY);
+    }
+    traced
+        .accelerator
+        .nearest(&mut rays, &mut hits, Coherence::Coherent);
+    let position = |shape: &Shape| {
+        traced
+            .scene
+            .shapes
+            .iter()
+            .position(|other| std::ptr::eq(other, shape))
+    };
+    for (i, (x, expected)) in expected.into_iter().enumerate() {
+        let numbers = |geometry, instance| {
+            let shape = traced.accelerator.shape(&traced.scene, geometry)?;
+            let instance = traced.accelerator.instance(&traced.scene, instance);
+            let number = instance.map(|found| {
+                traced
+                    .scene
+                    .instances
+                    .iter()
+                    .position(|other| other == found)
+                    .unwrap()
+            });
+            Some((position(shape).unwrap(), number))
+        };
+        assert_eq!(
+            numbers(hits.geometry_id(i), hits.instance_id(i)),
+            expected,
+            "{x}"
+        );
+        let ray = crate::embree::Ray1::new([x, 0.1, 9.0], [0.0, 0.0, -1.0], 0.0, f32::INFINITY);
+        let mut ray = RayHit1::new(ray);
+        traced.accelerator.nearest1(&mut ray, Coherence::Incoherent);
+        assert_eq!(
+            numbers(ray.hit.geometry_id, ray.hit.instance_id),
+            expected,
+            "{x}"
+        );
     }
 }
