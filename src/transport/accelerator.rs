@@ -64,10 +64,9 @@ impl Accelerator {
         let mut first_shapes = Vec::with_capacity(scene.instances.len());
         for instance in &scene.instances {
             let group = instance.group.index();
-            let (axes, origin) = instance.to_world();
             let to_world = Affine {
-                axes: axes.map(Vec3::into),
-                origin: origin.into(),
+                axes: instance.axes().map(Vec3::into),
+                origin: instance.origin().into(),
             };
             builder.add_instance(embree::Instance::new(groups[group].clone(), to_world)?);
             first_shapes.push(scene.groups[group].shapes.start as u32);

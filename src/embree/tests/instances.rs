@@ -310,10 +310,10 @@ fn bounds_hold_what_instances_hold() {
     let village = Village::new();
     let scene = village.scene(&device(), BuildOptions::default());
     let bounds = scene.bounds();
-    for corner in village.flat().iter().flatten() {
-        for axis in 0..3 {
-            assert!(corner[axis] >= bounds.min[axis] - 1e-5);
-            assert!(corner[axis] <= bounds.max[axis] + 1e-5);
+    for corner in village.flat().into_iter().flatten() {
+        let pairs = corner.iter().zip(bounds.min.iter().zip(&bounds.max));
+        for (x, (min, max)) in pairs {
+            assert!(*x >= min - 1e-5 && *x <= max + 1e-5);
         }
     }
 }

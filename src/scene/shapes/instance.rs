@@ -96,14 +96,14 @@ impl Instance {
         corners.all(|corner| is_near(self.position(corner)))
     }
 
-    /// Where the axes of the group's space go, and its origin.
-    pub(crate) fn to_world(&self) -> ([Vec3; 3], Vec3) {
-        let Mat3 {
-            x_axis,
-            y_axis,
-            z_axis,
-        } = self.axes;
-        ([x_axis, y_axis, z_axis], self.origin)
+    /// Where the unit vectors of the group's space go.
+    pub fn axes(&self) -> [Vec3; 3] {
+        [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis]
+    }
+
+    /// Where the origin of the group's space goes.
+    pub fn origin(&self) -> Vec3 {
+        self.origin
     }
 
     #[inline]
