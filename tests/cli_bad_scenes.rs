@@ -31,7 +31,7 @@ fn unknown_plugins_of_every_class() {
             "shape",
             "sphere",
             "8:1",
-            "obj, ply, serialized, rectangle, cube, sphere, disk, cylinder",
+            "obj, ply, serialized, rectangle, cube, sphere, disk, cylinder, shapegroup, instance",
         ),
         (
             "bsdf",
@@ -216,6 +216,107 @@ fn values_out_of_range() {
         let said = Folder::new().refusal(&with(SCENE, old, new), []);
         assert!(said.contains(message), "{said}");
         assert!(said.starts_with("cohort: scene.xml:"), "{said}");
+    }
+}
+
+#[test]
+fn groups_and_instances() {
+    const SHAPE: &str = r#"<shape type="sphere"><bsdf type="diffuse"/></shape>"#;
+    const SPHERE: &str = r#"<shape type="sphere"/>"#;
+    const SHOWN: &str = r#"<ref id="g"/>"#;
+    let group = |content: &str| format!(r#"<shape type="shapegroup" id="g">{content}</shape>"#);
+    let instance = |content: &str| format!("\n<shape type=\"instance\">{content}</shape>");
+    let pair = |members: &str, content: &str| group(members) + &instance(content);
+    let to_world = |steps: &str| {
+        let transform = format!(r#"<transform name="to_world">{steps}</transform>"#);
+        pair(SPHERE, &(SHOWN.to_owned() + &transform))
+    };
+    let lamp = r#"<shape type="cube"><emitter type="area"/></shape>"#;
+    let no_light = "the shape `cube` in a `shapegroup` cannot be a light: instances of lights are not supported; let it stand \
+                    outside of the group";
+    let no_inverse = "`to_world` of the `instance` has no inverse in single precision: it flattens the group, or makes it too large \
+                      or too small";
+    for (shapes, place, message) in [
+        (
+            instance(""),
+            "9:1",
+            "the `instance` needs a `shapegroup` to show, such as <ref id=\"...\"/> of one",
+        ),
+        (
+            instance(SPHERE),
+            "9:24",
+            "an `instance` shows a `shapegroup`, not the shape `sphere`",
+        ),
+        (
+            instance(r#"<ref id="nobody"/>"#),
+            "9:24",
+            "no object has the id `nobody`; there are: none",
+        ),
+        (
+            pair(SPHERE, &SHOWN.repeat(2)),
+            "9:37",
+            "the shape `instance` has more than one <shape>; it can have one",
+        ),
+        (
+            pair(SPHERE, &format!(r#"{SHOWN}<bsdf type="diffuse"/>"#)),
+            "9:37",
+            "`instance` takes no bsdf; it takes the objects: shape; and the parameters: to_world",
+        ),
+        (
+            pair(
+                SPHERE,
+                &format!(r#"{SHOWN}<boolean name="flip_normals" value="true"/>"#),
+            ),
+            "9:37",
+            "`instance` has no parameter `flip_normals`; it has: to_world",
+        ),
+        (
+            group(&format!(r#"{SPHERE}<bsdf type="diffuse"/>"#)),
+            "8:55",
+            "`shapegroup` takes no bsdf; it takes the objects: shape; and the parameters: none",
+        ),
+        (
+            pair("", SHOWN),
+            "8:1",
+            "the `shapegroup` is empty; it needs at least one shape",
+        ),
+        (group(lamp), "8:52", no_light),
+        (pair(lamp, SHOWN), "8:52", no_light),
+        (
+            pair(SPHERE, SHOWN) + &group(&instance(SHOWN)).replace("\"g\">\n", "\"h\">"),
+            "9:77",
+            "a `shapegroup` cannot contain the shape `instance`: instances do not nest",
+        ),
+        (
+            group(&group(SPHERE).replace(" id=\"g\"", "")),
+            "8:33",
+            "a `shapegroup` cannot contain the shape `shapegroup`: instances do not nest",
+        ),
+        (
+            pair(
+                r#"<shape type="sphere"><float name="radius" value="0"/></shape>"#,
+                SHOWN,
+            ),
+            "8:54",
+            "`radius` is 0; it must be positive",
+        ),
+        (
+            group(r#"<shape type="sphere"><bsdf type="difuse"/></shape>"#),
+            "8:54",
+            "the bsdf `difuse` is not supported; supported are: ",
+        ),
+        (to_world(r#"<scale y="0"/>"#), "9:37", no_inverse),
+        (to_world(r#"<scale value="1e-13"/>"#), "9:37", no_inverse),
+        (to_world(r#"<scale value="1e30"/>"#), "9:37", no_inverse),
+        (
+            to_world(r#"<translate x="1e19"/>"#),
+            "9:1",
+            "this `instance` is too large or too far away: coordinates must be at most 1e18",
+        ),
+    ] {
+        let said = Folder::new().refusal(&with(SCENE, SHAPE, &shapes), []);
+        let expected = format!("cohort: scene.xml:{place}: {message}");
+        assert!(said.starts_with(&expected), "{shapes}\n{said}\n{expected}");
     }
 }
 

@@ -40,7 +40,7 @@ fn a_matte_scene() {
         row(&said, "surroundings"),
         "surroundings on emitter `constant` (scene.xml:9)"
     );
-    assert_eq!(off.len(), 16, "{said}");
+    assert_eq!(off.len(), 17, "{said}");
     assert!(off.iter().all(|line| line.ends_with(" off")), "{said}");
 }
 
@@ -58,6 +58,24 @@ fn effects_name_their_objects() {
     );
     assert_eq!(row(&said, "mirrors"), "mirrors off");
     assert!(said.contains(&format!("\n  {pane}\n")), "{said}");
+}
+
+#[test]
+fn groups_call_for_instancing_where_they_are_shown() {
+    let group = r#"<shape type="shapegroup" id="pair"><shape type="sphere"><bsdf type="diffuse"/></shape></shape>"#;
+    let sphere = r#"<shape type="sphere"><bsdf type="diffuse"/></shape>"#;
+    let said = explanation(&with(SCENE, sphere, group));
+    assert_eq!(row(&said, "instancing"), "instancing off");
+    assert!(said.contains("engine: matte, "), "{said}");
+    let shown = format!(
+        "{group}\n{}",
+        r#"<shape type="instance"><ref id="pair"/></shape>"#.repeat(2)
+    );
+    let said = explanation(&with(SCENE, sphere, &shown));
+    let pair = "shape `shapegroup` called `pair` (scene.xml:8)";
+    assert_eq!(row(&said, "instancing"), format!("instancing on {pair}"));
+    assert!(said.contains("engine: general, "), "{said}");
+    assert!(said.contains(&format!("\n  {pair}\n")), "{said}");
 }
 
 #[test]

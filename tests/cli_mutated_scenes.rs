@@ -30,6 +30,9 @@ const SCENE: &str = r#"<scene version="3.0.0"><default name="spp" value="1"/>
 <spectrum name="int_ior" type="sellmeier"><vector name="b" x="1" y="0.2" z="1"/><vector name="c" x="0.006" y="0.02" z="103"/></spectrum></bsdf></shape>
 <shape type="disk"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance"><transform name="to_uv"><scale x="4"/></transform></texture></bsdf><transform name="to_world"><scale value="2"/><rotate x="1" angle="30"/></transform></shape>
 <shape type="cube"><transform name="to_world"><translate y="-3"/></transform><ref id="white"/></shape>
+<shape type="shapegroup" id="pair"><shape type="sphere"><float name="radius" value="0.2"/></shape><shape type="rectangle"><ref id="red"/></shape></shape>
+<shape type="instance"><ref id="pair"/><transform name="to_world"><scale x="0.5" y="-1" z="2"/><translate x="1" y="1"/></transform></shape>
+<shape type="instance"><ref id="pair"/></shape>
 <shape type="rectangle"><transform name="to_world"><rotate y="1" angle="180"/><translate x="0" z="7"/></transform>
 <emitter type="area"><float name="radiance" value="5"/></emitter></shape>
 <emitter type="point"><point name="position" x="0" y="4" z="4"/></emitter>

@@ -94,6 +94,25 @@ fn the_number_of_threads_changes_no_bit() {
 }
 
 #[test]
+fn the_number_of_threads_changes_no_bit_of_instances() {
+    let path = files::of_project("tests/scenes/instances.xml");
+    let scene = Scene::load(path, &LoadOptions::default()).expect("the scene can be loaded");
+    let scene = Arc::new(scene);
+    for kind in [StrategyKind::Roulette, StrategyKind::ParticleFilter] {
+        let with = |threads| {
+            let strategy = kind.build(&StrategyOptions::default());
+            let strategy = strategy.expect("defaults are valid");
+            film(&scene, settings(strategy, ColourMode::Rgb, threads, 7))
+        };
+        let one = with(1);
+        assert!(one.image().mean()[1] > 0.01, "{kind}: the image is black");
+        for threads in [2, 3] {
+            assert!(with(threads) == one, "{kind}: {threads} threads");
+        }
+    }
+}
+
+#[test]
 fn another_seed_changes_every_tile() {
     let scene = scene();
     for strategy in strategies() {

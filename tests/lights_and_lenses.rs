@@ -76,6 +76,66 @@ fn a_sky_of_one_colour_is_a_furnace() {
     }
 }
 
+/// The same for a convex body in an instance, wherever that stands: far away; large; stretched; and where the group's own coordinates
+/// are as large as those of the translation that takes them back, so that rays lose digits on the way to the group's space.
+#[test]
+fn an_instance_is_a_furnace_wherever_it_stands() {
+    let turned = r#"<rotate x="0.6" y="0.48" z="0.64" angle="40"/>"#;
+    // R (300, -200, 100) with that rotation R.
+    let back = r#"<translate x="-363.719206" y="51.740721" z="70.931214"/>"#;
+    for (plugin, own, to_world, [x, y, z], size) in [
+        ("sphere", "", "", [0.0, 0.0, 0.0], 1.0),
+        ("cube", "", turned, [0.0, 0.0, 0.0], 1.0),
+        (
+            "sphere",
+            "",
+            r#"<scale value="1e4"/>"#,
+            [0.0, 0.0, 0.0],
+            1e4,
+        ),
+        (
+            "sphere",
+            "",
+            r#"<rotate y="1" angle="30"/><scale x="-1" y="0.5" z="0.8"/>"#,
+            [0.0, 0.0, 0.0],
+            0.7,
+        ),
+        (
+            "cube",
+            "",
+            r#"<rotate x="0.6" y="0.48" z="0.64" angle="40"/><translate x="500" y="-300" z="400"/>"#,
+            [500.0, -300.0, 400.0],
+            1.0,
+        ),
+        (
+            "cube",
+            r#"<translate x="300" y="-200" z="100"/>"#,
+            &format!("{turned}{back}"),
+            [0.0, 0.0, 0.0],
+            1.0,
+        ),
+    ] {
+        // A camera that sees nothing but the body.
+        let eye = [x + 4.0 * size, y + size, z + 2.0 * size];
+        let scene = scene(&format!(
+            r#"<integrator type="path"/>
+            <sensor type="perspective"><float name="fov" value="5"/><float name="near_clip" value="1e-3"/><float name="far_clip" value="1e6"/>
+                <transform name="to_world"><lookat origin="{} {} {}" target="{x} {y} {z}" up="0 0 1"/></transform>{BOX_FILM}</sensor>
+            <shape type="shapegroup" id="group">
+                <shape type="{plugin}"><transform name="to_world">{own}</transform>
+                    <bsdf type="diffuse"><rgb name="reflectance" value="0.6"/></bsdf></shape></shape>
+            <shape type="instance"><ref id="group"/><transform name="to_world">{to_world}</transform></shape>
+            <emitter type="constant"><rgb name="radiance" value="1"/></emitter>"#,
+            eye[0], eye[1], eye[2],
+        ));
+        let ours = replicates(&scene, settings(SamplerKind::Independent), 0..16, 256);
+        let [mean, ..] = ours.means();
+        let deviation = (mean.mean - 0.6).abs();
+        let allowed = 4.0 * mean.standard_error() + 1e-5;
+        assert!(deviation <= allowed, "{plugin} {to_world}: {}", mean.mean);
+    }
+}
+
 /// A plane, seen from above in a few points about its middle. `light` lights it.
 fn lit_plane(light: &str) -> f64 {
     let scene = scene(&format!(

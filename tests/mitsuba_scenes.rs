@@ -229,6 +229,10 @@ cases! {
     plastics_in_wavelengths: "plastics" in_wavelengths;
     textures: "textures";
     textures_in_wavelengths: "textures" in_wavelengths;
+    instances: "instances";
+    instances_in_wavelengths: "instances" in_wavelengths;
+    instances_of_flipped_shapes: "instances" ["flip" = "true", "mirror" = "1"];
+    instances_of_flipped_shapes_mirrored: "instances" ["flip" = "true"];
 
     colours: "colours";
     colours_in_wavelengths: "colours" in_wavelengths;
@@ -263,6 +267,7 @@ mod gallery {
         directional: "directional";
         projector: "projector" in_wavelengths;
         many_lights: "many-lights";
+        instances: "instances" in_wavelengths;
         thin_lens: "thin-lens";
         orthographic: "orthographic";
     }

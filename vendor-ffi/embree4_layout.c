@@ -37,6 +37,8 @@ SAME(offsetof(struct RTCOccludedArguments, feature_mask), 4);
 SAME(offsetof(struct RTCOccludedArguments, occluded), 24);
 
 /* What src/embree/user_geometry.rs reads and writes. */
+SAME(offsetof(struct RTCRayQueryContext, instID), 0);
+SAME(offsetof(struct RTCIntersectFunctionNArguments, context), 24);
 SAME(offsetof(struct RTCIntersectFunctionNArguments, rayhit), 32);
 SAME(offsetof(struct RTCIntersectFunctionNArguments, N), 40);
 SAME(offsetof(struct RTCOccludedFunctionNArguments, ray), 32);

@@ -36,7 +36,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Box<dyn Error>> {
         }
         not_matte => {
             println!(
-                "engine: general, for these surfaces do more than to reflect diffusely, the same at every point:"
+                "engine: general, for there is more here than surfaces that reflect diffusely, the same at every point:"
             );
             for line in listed(not_matte.iter()) {
                 println!("  {line}");

@@ -98,6 +98,11 @@ impl Device {
         self.0.packet_width
     }
 
+    /// Whether `other` is this device.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+
     pub(super) fn raw(&self) -> raw::RTCDevice {
         self.0.raw
     }

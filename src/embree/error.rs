@@ -65,6 +65,15 @@ pub enum EmbreeError {
         /// The upper corner.
         max: [f32; 3],
     },
+    /// An instance of a scene that has instances itself.
+    #[error("an instance cannot stand in a scene that is instanced itself")]
+    NestedInstance,
+    /// An instance of a scene of another device.
+    #[error("a scene can hold instances of scenes of its own device only")]
+    OtherDevice,
+    /// A map of an instance that single precision cannot invert.
+    #[error("the transform of an instance has no inverse in single precision")]
+    NoInverse,
     /// A user geometry panicked while a ray was intersected with it. The ray was taken to miss.
     #[error("primitive {primitive} of geometry {geometry} panicked when a ray met it: {message}")]
     UserPanic {

@@ -1,8 +1,8 @@
 //! Ray tracing by Embree, made safe: the only room of the house with `unsafe` code.
 //!
 //! A [`Device`] holds what Embree shares between scenes. A [`SceneBuilder`] collects
-//! [`TriangleMesh`]es and [`UserGeometry`] and builds a [`Scene`], which is then traced from any
-//! number of threads by one of four kinds of call:
+//! [`TriangleMesh`]es, [`UserGeometry`] and [`Instance`]s of other scenes and builds a [`Scene`], which is
+//! then traced from any number of threads by one of four kinds of call:
 //!
 //! | call | rays | when |
 //! |---|---|---|
@@ -14,7 +14,8 @@
 //! and the `occluded` form of each, which only asks whether anything is in the way.
 //!
 //! Debian's Embree 3.13 and Embree 4.3 are both served and `build.rs` chooses; `raw` and `calls`
-//! are the only files that know which one it is. All of this room works in world space.
+//! are the only files that know which one it is. All of this room works in world space,
+//! but for what stands in instances.
 #![allow(unsafe_code)]
 
 mod buffer;
@@ -23,6 +24,7 @@ mod denormals;
 mod device;
 mod error;
 mod geometry;
+mod instance;
 mod lanes;
 mod packet;
 pub mod plain_c;
@@ -43,6 +45,7 @@ pub use denormals::{DenormalsFlushed, flush_denormals_to_zero};
 pub use device::Device;
 pub use error::{EmbreeError, ErrorKind};
 pub use geometry::{Bounds, GeometryId, INVALID_GEOMETRY};
+pub use instance::{Affine, Instance};
 pub use packet::{HitPacket, RayHitPacket, RayPacket, ValidMask};
 pub use query::Coherence;
 pub use ray::{Hit1, Ray1, RayHit1};

@@ -75,7 +75,8 @@ impl<const K: usize> RayPacket<K> {
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HitPacket<const K: usize> {
-    /// The geometric normals in world space, of any length: all x, all y, all z.
+    /// The geometric normals, of any length: all x, all y, all z. In world space, or in the space of the scene that stands in
+    /// an instance.
     pub normal: [[f32; K]; 3],
     /// First coordinate on the primitive (see [`super::TriangleMesh`]).
     pub u: [f32; K],

@@ -63,7 +63,7 @@ impl Scene {
 impl Scene {
     /// Finds the nearest hits of a stream: as many hits as rays. The t of a hit is the ray's `tfar`.
     pub fn intersect_stream(&self, rays: &mut Rays, hits: &mut Hits, coherence: Coherence) {
-        hits.reset(rays.len());
+        hits.reset(rays.len(), self.has_instances());
         calls::intersect_stream(self, rays, hits, coherence);
     }
 

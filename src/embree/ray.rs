@@ -51,7 +51,7 @@ impl Ray1 {
 #[repr(C, align(16))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit1 {
-    /// The geometric normal in world space, of any length.
+    /// The geometric normal, of any length: in world space, or in the space of the scene that stands in an instance.
     pub normal: [f32; 3],
     /// First coordinate on the primitive (see [`super::TriangleMesh`]).
     pub u: f32,

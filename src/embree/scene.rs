@@ -1,10 +1,12 @@
 //! Scenes: what is collected by the builder, and what can be traced.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::device::Device;
 use super::error::EmbreeError;
 use super::geometry::{Bounds, GeometryId};
+use super::instance::Instance;
 use super::raw;
 use super::triangle_mesh::TriangleMesh;
 use super::user_geometry::{UserData, UserGeometry};
@@ -43,6 +45,7 @@ pub struct SceneBuilder {
 enum Geometry {
     Triangles(TriangleMesh),
     User(Arc<UserData>),
+    Instance(Instance),
 }
 
 impl SceneBuilder {
@@ -65,6 +68,11 @@ impl SceneBuilder {
         self.add(|id| Geometry::User(UserData::new(geometry, id)))
     }
 
+    /// Adds an instance of another scene of the same device and returns its number.
+    pub fn add_instance(&mut self, instance: Instance) -> GeometryId {
+        self.add(|_| Geometry::Instance(instance))
+    }
+
     fn add(&mut self, geometry: impl FnOnce(GeometryId) -> Geometry) -> GeometryId {
         let id = GeometryId(self.geometries.len() as u32);
         self.geometries.push(geometry(id));
@@ -74,7 +82,7 @@ impl SceneBuilder {
     /// Hands the geometry to Embree and builds the tree over it.
     ///
     /// # Errors
-    /// [`EmbreeError::BadBounds`] of a user geometry, or [`EmbreeError::Library`], for example when
+    /// [`EmbreeError::BadBounds`] of a user geometry, [`EmbreeError::OtherDevice`] of an instance, or [`EmbreeError::Library`], for example when
     /// the memory does not suffice.
     pub fn build(self) -> Result<Scene, EmbreeError> {
         let Self {
@@ -89,6 +97,7 @@ impl SceneBuilder {
             raw,
             device,
             options,
+            instanced: distinct_scenes(&geometries),
             geometries,
         };
         let flags = [
@@ -112,6 +121,7 @@ impl SceneBuilder {
             let handle = match geometry {
                 Geometry::Triangles(mesh) => mesh.to_embree(&scene.device)?,
                 Geometry::User(data) => data.to_embree(&scene.device)?,
+                Geometry::Instance(instance) => instance.to_embree(&scene.device)?,
             };
             // SAFETY: both are alive and committed; the scene keeps what the geometry points to, and
             // no other geometry has this number.
@@ -125,12 +135,27 @@ impl SceneBuilder {
     }
 }
 
+/// The scenes of which there are instances among `geometries`, each once.
+fn distinct_scenes(geometries: &[Geometry]) -> Vec<Arc<Scene>> {
+    let mut known = HashSet::new();
+    let scenes = geometries.iter().filter_map(|geometry| match geometry {
+        Geometry::Instance(instance) => Some(instance.scene()),
+        Geometry::Triangles(_) | Geometry::User(_) => None,
+    });
+    scenes
+        .filter(|scene| known.insert(Arc::as_ptr(scene)))
+        .cloned()
+        .collect()
+}
+
 /// Geometry that rays can be traced through, from any number of threads. It does not change.
 pub struct Scene {
     raw: raw::RTCScene,
     device: Device,
     options: BuildOptions,
     geometries: Vec<Geometry>,
+    /// The scenes of which it has instances, each once.
+    instanced: Vec<Arc<Scene>>,
 }
 
 // SAFETY: a committed scene may be traced and released by any thread; meshes are immutable and user
@@ -170,19 +195,32 @@ impl Scene {
         self.options
     }
 
+    /// Whether it has instances of other scenes.
+    pub fn has_instances(&self) -> bool {
+        !self.instanced.is_empty()
+    }
+
     /// Whether everything traced so far can be relied on. To be asked after a batch of calls, which
     /// do not check for themselves.
     ///
     /// # Errors
-    /// [`EmbreeError::UserPanic`], the first of the scene's first geometry that ever panicked, or
+    /// [`EmbreeError::UserPanic`], the first of the scene's first geometry that ever panicked, or of an instanced scene's, or
     /// [`EmbreeError::Library`] when Embree has reported an error since the last look.
     pub fn check(&self) -> Result<(), EmbreeError> {
+        self.check_geometries()?;
+        for scene in &self.instanced {
+            scene.check_geometries()?;
+        }
+        self.device.check("trace rays")
+    }
+
+    fn check_geometries(&self) -> Result<(), EmbreeError> {
         for geometry in &self.geometries {
             if let Geometry::User(data) = geometry {
                 data.check()?;
             }
         }
-        self.device.check("trace rays")
+        Ok(())
     }
 
     pub(super) fn raw(&self) -> raw::RTCScene {

@@ -162,6 +162,8 @@ pub struct Hits {
     pub(super) v: Lanes<f32>,
     pub(super) primitive_id: Lanes<u32>,
     pub(super) geometry_id: Lanes<u32>,
+    /// Empty where the scene has no instances: then nobody pays for it.
+    pub(super) instance_id: Lanes<u32>,
 }
 
 impl Hits {
@@ -170,19 +172,24 @@ impl Hits {
         Self::default()
     }
 
-    /// Makes room for `len` rays and calls all of them misses.
-    pub(super) fn reset(&mut self, len: usize) {
+    /// Makes room for `len` rays, calls all of them misses, and makes room for the instances that they may meet if there are any.
+    pub(super) fn reset(&mut self, len: usize, has_instances: bool) {
         self.resize(len);
         self.geometry_id.fill(INVALID_GEOMETRY);
+        if has_instances {
+            self.instance_id.resize(len);
+            self.instance_id.fill(INVALID_GEOMETRY);
+        }
     }
 
-    /// Makes room for `len` rays, whose hits are unspecified.
+    /// Makes room for `len` rays, whose hits are unspecified, in a scene without instances.
     pub(super) fn resize(&mut self, len: usize) {
         self.normal.iter_mut().for_each(|axis| axis.resize(len));
         self.u.resize(len);
         self.v.resize(len);
         self.primitive_id.resize(len);
         self.geometry_id.resize(len);
+        self.instance_id.resize(0);
     }
 
     /// Puts the hit of ray `i` in its place.
@@ -197,6 +204,19 @@ impl Hits {
         self.v[i] = hit.v;
         self.primitive_id[i] = hit.primitive_id;
         self.geometry_id[i] = hit.geometry_id;
+        if let Some(instance) = self.instance_id.get_mut(i) {
+            *instance = hit.instance_id;
+        }
+    }
+
+    /// Gives every geometry that was hit in an instance the number `number(instance, geometry)`.
+    pub fn renumber_instanced(&mut self, number: impl Fn(u32, u32) -> u32) {
+        let hits = self.geometry_id.iter_mut().zip(self.instance_id.iter());
+        for (geometry, &instance) in hits {
+            if *geometry != INVALID_GEOMETRY && instance != INVALID_GEOMETRY {
+                *geometry = number(instance, *geometry);
+            }
+        }
     }
 
     /// How many rays were traced.
@@ -218,7 +238,8 @@ impl Hits {
         self.geometry_id[i] != INVALID_GEOMETRY
     }
 
-    /// The geometric normal in world space where ray `i` hit, of any length.
+    /// The geometric normal where ray `i` hit, of any length: in world space, or in the space of the scene that stands in an
+    /// instance.
     #[inline]
     pub fn normal(&self, i: usize) -> [f32; 3] {
         std::array::from_fn(|axis| self.normal[axis][i])
@@ -240,6 +261,12 @@ impl Hits {
     #[inline]
     pub fn geometry_id(&self, i: usize) -> u32 {
         self.geometry_id[i]
+    }
+
+    /// The instance in which ray `i` hit, or [`INVALID_GEOMETRY`] outside instances.
+    #[inline]
+    pub fn instance_id(&self, i: usize) -> u32 {
+        self.instance_id.get(i).copied().unwrap_or(INVALID_GEOMETRY)
     }
 
     /// All normals: the x, the y and the z.
@@ -265,5 +292,10 @@ impl Hits {
     /// Every geometry.
     pub fn geometry_ids(&self) -> &[u32] {
         &self.geometry_id
+    }
+
+    /// Every instance; none where the scene has no instances.
+    pub fn instance_ids(&self) -> &[u32] {
+        &self.instance_id
     }
 }

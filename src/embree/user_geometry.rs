@@ -7,10 +7,11 @@ use std::sync::{Arc, OnceLock};
 
 use super::device::Device;
 use super::error::EmbreeError;
-use super::geometry::{Bounds, GeometryHandle, GeometryId, INVALID_GEOMETRY};
+use super::geometry::{Bounds, GeometryHandle, GeometryId};
 use super::raw;
 
-/// One or many primitives that intersect rays themselves, in world space.
+/// One or many primitives that intersect rays themselves, in world space, or in the space of the scene that they are in where that
+/// one is instanced.
 pub trait UserGeometry: Send + Sync + 'static {
     /// How many primitives there are. Asked once.
     fn count(&self) -> u32;
@@ -23,7 +24,7 @@ pub trait UserGeometry: Send + Sync + 'static {
     fn intersect(&self, primitive: u32, ray: &UserRay) -> Option<UserHit>;
 }
 
-/// A ray in world space: origin + t · direction for t from `tnear` to `tfar`.
+/// A ray in the geometry's space: origin + t · direction for t from `tnear` to `tfar`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UserRay {
     /// Where it starts.
@@ -45,7 +46,7 @@ pub struct UserHit {
     pub u: f32,
     /// Second coordinate on the primitive.
     pub v: f32,
-    /// The geometric normal in world space, of any length.
+    /// The geometric normal in the geometry's space, of any length.
     pub normal: [f32; 3],
 }
 
@@ -144,6 +145,14 @@ fn message_of(payload: Box<dyn Any + Send>) -> String {
     }
 }
 
+/// What a hit says of itself.
+#[derive(Clone, Copy)]
+struct Primitive {
+    instance: u32,
+    geometry: GeometryId,
+    primitive: u32,
+}
+
 /// The rays, or rays and hits, of a callback: component after component, each `n` words long.
 ///
 /// Which component is which is what `RTCRayN_org_x` and its siblings say in `rtcore_ray.h`.
@@ -186,7 +195,7 @@ impl Words {
 
     /// # Safety
     /// There must be the 20 components of rays and hits, and `lane` must be below `n`.
-    unsafe fn set_hit(&self, lane: usize, geometry: GeometryId, primitive: u32, hit: &UserHit) {
+    unsafe fn set_hit(&self, lane: usize, met: Primitive, hit: &UserHit) {
         // SAFETY: all components written are below 20.
         let write = |component, word| unsafe { *self.at(component, lane) = word };
         write(Self::TFAR, hit.t);
@@ -195,9 +204,9 @@ impl Words {
         }
         write(Self::U, hit.u);
         write(Self::V, hit.v);
-        write(Self::PRIMITIVE_ID, f32::from_bits(primitive));
-        write(Self::GEOMETRY_ID, f32::from_bits(geometry.0));
-        write(Self::INSTANCE_ID, f32::from_bits(INVALID_GEOMETRY));
+        write(Self::PRIMITIVE_ID, f32::from_bits(met.primitive));
+        write(Self::GEOMETRY_ID, f32::from_bits(met.geometry.0));
+        write(Self::INSTANCE_ID, f32::from_bits(met.instance));
     }
 }
 
@@ -219,14 +228,20 @@ unsafe extern "C" fn on_bounds(arguments: *const raw::RTCBoundsFunctionArguments
 
 /// Intersects the valid rays of a packet of any width.
 unsafe extern "C" fn on_intersect(arguments: *const raw::RTCIntersectFunctionNArguments) {
-    // SAFETY: Embree passes its arguments and the data set on the geometry, both alive.
-    let (arguments, data) = unsafe {
+    // SAFETY: Embree passes its arguments, the data set on the geometry, and its context, all alive.
+    let (arguments, data, [instance]) = unsafe {
         let arguments = &*arguments;
-        (arguments, &*arguments.geometryUserPtr.cast::<UserData>())
+        let data = &*arguments.geometryUserPtr.cast::<UserData>();
+        (arguments, data, (*arguments.context).instID)
     };
     let words = Words {
         start: arguments.rayhit.cast(),
         n: arguments.N as usize,
+    };
+    let met = Primitive {
+        instance,
+        geometry: data.id,
+        primitive: arguments.primID,
     };
     for lane in 0..words.n {
         // SAFETY: `valid` has `N` entries, and `rayhit` `N` rays and hits.
@@ -235,7 +250,7 @@ unsafe extern "C" fn on_intersect(arguments: *const raw::RTCIntersectFunctionNAr
                 continue;
             }
             if let Some(hit) = data.intersect(arguments.primID, &words.ray(lane)) {
-                words.set_hit(lane, data.id, arguments.primID, &hit);
+                words.set_hit(lane, met, &hit);
             }
         }
     }

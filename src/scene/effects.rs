@@ -43,6 +43,8 @@ pub enum Effect {
     Projections,
     /// More than one light to choose from.
     ManyLights,
+    /// Shapes that are seen in many places.
+    Instancing,
     /// A lens.
     DepthOfField,
     /// A camera without perspective.
@@ -51,7 +53,7 @@ pub enum Effect {
 
 impl Effect {
     /// All effects, in the order in which they are told.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Mirrors,
         Self::Glass,
         Self::Gloss,
@@ -67,6 +69,7 @@ impl Effect {
         Self::PointLights,
         Self::Projections,
         Self::ManyLights,
+        Self::Instancing,
         Self::DepthOfField,
         Self::Orthographic,
     ];
@@ -89,6 +92,7 @@ impl Effect {
             Self::PointLights => "point lights",
             Self::Projections => "projections",
             Self::ManyLights => "many lights",
+            Self::Instancing => "instancing",
             Self::DepthOfField => "depth of field",
             Self::Orthographic => "orthographic camera",
         }
@@ -124,6 +128,8 @@ impl Effects {
             let effects = of_emitter(emitter).iter().copied().chain(many);
             calls.extend(effects.map(|effect| (effect, source.clone())));
         }
+        let groups = scene.sources.groups.iter();
+        calls.extend(groups.map(|source| (Effect::Instancing, source.clone())));
         let of_camera = match scene.camera {
             Camera::Perspective(_) => None,
             Camera::ThinLens(_) => Some(Effect::DepthOfField),
@@ -134,7 +140,11 @@ impl Effects {
         let not_matte = materials.filter(|(material, _)| !material.is_matte());
         Self {
             calls,
-            not_matte: not_matte.filter_map(|(_, source)| source.clone()).collect(),
+            not_matte: not_matte
+                .filter_map(|(_, source)| source.as_ref())
+                .chain(&scene.sources.groups)
+                .cloned()
+                .collect(),
         }
     }
 
@@ -152,16 +162,16 @@ impl Effects {
         calls.map(|(_, source)| source)
     }
 
-    /// The bsdfs for which the engine needs its general variant; none where the one for [matte](Scene::is_matte) scenes will do.
+    /// The objects, bsdfs and groups, for which the engine needs its general variant; none where the one for [matte](Scene::is_matte) scenes will do.
     pub fn not_matte(&self) -> &[Source] {
         &self.not_matte
     }
 }
 
 impl Scene {
-    /// Whether all surfaces reflect diffusely, the same at every point: then the engine runs the variant that holds nothing else.
+    /// Whether all surfaces reflect diffusely, the same at every point, and none stands in an instance: then the engine runs the variant that holds nothing else.
     pub fn is_matte(&self) -> bool {
-        self.materials.iter().all(Material::is_matte)
+        self.instances.is_empty() && self.materials.iter().all(Material::is_matte)
     }
 }
 

@@ -1,5 +1,7 @@
 //! From a scene file to a [`Scene`]: every object of the file is handed to the plugin that it names.
 
+mod shapes;
+
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -8,11 +10,11 @@ use super::bsdfs::{self, Material};
 use super::emitters::{self, Emitter};
 use super::error::SceneError;
 use super::integrators::{self, PathIntegrator};
-use super::shapes::{self, Geometry, Shape};
+use super::shapes::{Shape, ShapeGroup};
 use super::source::{Source, Sources};
 use super::textures::TextureLoader;
 use super::xml::{self, Class, Document, Object, SceneSource};
-use super::{EmitterId, IndependentSampler, MaterialId, Scene, ShapeId, sensors};
+use super::{EmitterId, IndependentSampler, MaterialId, Scene, ShapeGroupId, sensors};
 
 /// What can be told about loading a scene.
 #[derive(Clone, Debug, Default)]
@@ -75,13 +77,17 @@ pub(super) struct Loader<'d> {
     pub document: &'d Document,
     pub textures: TextureLoader<'d>,
     shapes: Vec<Shape>,
+    groups: Vec<ShapeGroup>,
     materials: Vec<Material>,
     emitters: Vec<Emitter>,
-    /// Where the materials come from, and the emitters.
+    /// Where the groups come from, the materials, and the emitters.
+    group_sources: Vec<Source>,
     material_sources: Vec<Option<Source>>,
     emitter_sources: Vec<Source>,
     /// Materials by their object in the file, so that a bsdf that many shapes refer to is loaded once.
     known_materials: HashMap<*const Object, MaterialId>,
+    /// Groups by their object in the file.
+    known_groups: HashMap<*const Object, ShapeGroupId>,
     /// What shapes without a bsdf are made of: those that do not emit, and those that do.
     default_materials: [Option<MaterialId>; 2],
 }
@@ -92,11 +98,14 @@ impl<'d> Loader<'d> {
             document,
             textures: TextureLoader::new(document),
             shapes: Vec::new(),
+            groups: Vec::new(),
             materials: Vec::new(),
             emitters: Vec::new(),
+            group_sources: Vec::new(),
             material_sources: Vec::new(),
             emitter_sources: Vec::new(),
             known_materials: HashMap::new(),
+            known_groups: HashMap::new(),
             default_materials: [None; 2],
         }
     }
@@ -117,9 +126,7 @@ impl<'d> Loader<'d> {
             film,
             sampler,
         } = sensors::load(&sensor.object)?;
-        for child in root.children(Class::Shape) {
-            self.shape(&child.object)?;
-        }
+        let instances = self.shapes_and_instances(&root.children(Class::Shape))?;
         for child in root.children(Class::Bsdf) {
             self.check_material(&child.object)?;
         }
@@ -134,6 +141,8 @@ impl<'d> Loader<'d> {
         Ok(Scene {
             name,
             shapes: self.shapes,
+            groups: self.groups,
+            instances,
             materials: self.materials,
             emitters: self.emitters,
             camera,
@@ -141,6 +150,7 @@ impl<'d> Loader<'d> {
             integrator,
             sampler,
             sources: Sources {
+                groups: self.group_sources,
                 materials: self.material_sources,
                 emitters: self.emitter_sources,
                 sensor: Source::of(&sensor.object),
@@ -203,66 +213,6 @@ impl<'d> Loader<'d> {
             id
         })
     }
-
-    fn shape(&mut self, object: &Object) -> Result<(), SceneError> {
-        let mut geometry = shapes::load(object, self)?;
-        let light = object.child(Class::Emitter)?;
-        let material = match object.child(Class::Bsdf)? {
-            Some(child) => self.material(&child.object)?,
-            None => self.default_material(light.is_some()),
-        };
-        keep_attributes(object, &mut geometry, &self.materials[material.index()])?;
-        let id = ShapeId(self.shapes.len() as u32);
-        let emitter = match light {
-            Some(child) => {
-                let light = emitters::load_area(&child.object, id)?;
-                if let Geometry::Triangles(mesh) = &mut geometry
-                    && !mesh.prepare_sampling()
-                {
-                    return Err(object.error("this shape cannot be a light: it has no area"));
-                }
-                Some(self.add_emitter(&child.object, Emitter::Area(light)))
-            }
-            None => None,
-        };
-        object.finish()?;
-        self.shapes.push(Shape {
-            geometry,
-            material,
-            emitter,
-        });
-        Ok(())
-    }
-}
-
-/// Keeps of what a shape's mesh says what its material asks for; it is an error if that is not there.
-fn keep_attributes(
-    object: &Object,
-    geometry: &mut Geometry,
-    material: &Material,
-) -> Result<(), SceneError> {
-    let names = material.attributes();
-    let missing = match geometry {
-        Geometry::Triangles(mesh) => mesh.keep_attributes(&names).err(),
-        _ => names.first().copied(),
-    };
-    if let Some(missing) = missing {
-        return Err(object.error(format!(
-            "the bsdf asks for the mesh attribute `{missing}`, which this {object} does not have"
-        )));
-    }
-    let Geometry::Triangles(mesh) = geometry else {
-        return Ok(());
-    };
-    for attribute in mesh.named_attributes() {
-        if let Some(number) = attribute.colour_outside_unit() {
-            return Err(object.error(format!(
-                "the mesh attribute `{}` has {number}; colours are linear sRGB from 0 to 1",
-                attribute.name
-            )));
-        }
-    }
-    Ok(())
 }
 
 impl IndependentSampler {

@@ -42,8 +42,9 @@ pub use sensors::{
     PixelFormat, ReconstructionFilter, ThinLens, ThinLensView,
 };
 pub use shapes::{
-    AttributesAt, Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Shape,
-    ShapeSample, Sphere, SurfaceParameters, SurfacePoint, TriangleAttributes, Triangles,
+    AttributesAt, Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Instance, Shape,
+    ShapeGroup, ShapeSample, Sphere, SurfaceParameters, SurfacePoint, TriangleAttributes,
+    Triangles,
 };
 pub(crate) use shapes::{CornerLanes, Parallelogram, SurfaceLanes};
 pub use source::{Source, Sources};
@@ -54,6 +55,10 @@ pub use textures::{
 /// A shape of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShapeId(pub(crate) u32);
+
+/// A group of shapes of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShapeGroupId(pub(crate) u32);
 
 /// A material of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,15 +79,19 @@ macro_rules! index_of {
         }
     )*};
 }
-index_of!(ShapeId, MaterialId, EmitterId);
+index_of!(ShapeId, ShapeGroupId, MaterialId, EmitterId);
 
 /// Everything that a scene file states.
 #[derive(Debug)]
 pub struct Scene {
     /// What the scene is called: its file, or the name of a built-in scene.
     pub name: String,
-    /// All shapes.
+    /// All shapes: first those that stand in the world themselves, then those of the groups.
     pub shapes: Vec<Shape>,
+    /// The groups of shapes that instances show.
+    pub groups: Vec<ShapeGroup>,
+    /// Where the groups stand in the world.
+    pub instances: Vec<Instance>,
     /// All materials.
     pub materials: Vec<Material>,
     /// All emitters.
@@ -97,6 +106,14 @@ pub struct Scene {
     pub sampler: IndependentSampler,
     /// Which objects of the file all this comes from.
     pub sources: Sources,
+}
+
+impl Scene {
+    /// The shapes that stand in the world themselves.
+    pub fn shapes_in_world(&self) -> &[Shape] {
+        let end = self.groups.first().map(|group| group.shapes.start);
+        &self.shapes[..end.unwrap_or(self.shapes.len())]
+    }
 }
 
 /// `independent`: what the scene file says of the samples.

@@ -18,11 +18,13 @@ pub struct Source {
     pub location: Location,
 }
 
-/// The objects that materials, emitters and the camera of a scene come from.
+/// The objects that materials, groups of shapes, emitters and the camera of a scene come from.
 #[derive(Clone, Debug)]
 pub struct Sources {
     /// By material; none where a shape has no bsdf.
     pub materials: Vec<Option<Source>>,
+    /// By group.
+    pub groups: Vec<Source>,
     /// By emitter.
     pub emitters: Vec<Source>,
     /// That of the camera.

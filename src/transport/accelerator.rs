@@ -1,14 +1,16 @@
 //! The scene's shapes in the intersection layer.
 
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 use glam::Vec3;
 
 use crate::embree::{
-    Bounds, BuildOptions, BuildQuality, Device, EmbreeError, Scene as EmbreeScene, SceneBuilder,
-    TriangleMesh, UserGeometry, UserHit, UserRay,
+    self, Affine, Bounds, BuildOptions, BuildQuality, Coherence, Device, EmbreeError, Hits,
+    INVALID_GEOMETRY, RayHit1, Rays, Scene as EmbreeScene, SceneBuilder, TriangleMesh,
+    UserGeometry, UserHit, UserRay,
 };
-use crate::scene::{Cylinder, Disk, Geometry, Scene, Shape, Sphere};
+use crate::scene::{Cylinder, Disk, Geometry, Instance, Scene, Shape, Sphere};
 
 /// How the acceleration structure is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,8 +24,15 @@ pub struct AcceleratorOptions {
 }
 
 /// All shapes of a scene, ready to be intersected.
+///
+/// The shapes that stand in the world are the first geometries of the intersection layer's scene, and instances of groups are those
+/// that follow. A group is a scene of its own, in which geometries are numbered from 0 on; hits that leave this room name the shape.
 pub struct Accelerator {
     scene: EmbreeScene,
+    /// How many shapes stand in the world: the number of the first instance.
+    first_instance: u32,
+    /// By instance: the first shape of its group.
+    first_shapes: Vec<u32>,
 }
 
 impl Accelerator {
@@ -38,22 +47,58 @@ impl Accelerator {
             robust: options.robust,
             compact: false,
         };
-        let mut builder = SceneBuilder::new(&device, build);
-        // Geometries are numbered in the order of adding: their numbers are the shapes' own.
-        for shape in &scene.shapes {
-            match &shape.geometry {
-                Geometry::Triangles(mesh) => {
-                    let mesh = TriangleMesh::new(mesh.vertices().clone(), mesh.indices().clone())?;
-                    builder.add_triangles(mesh)
-                }
-                Geometry::Sphere(sphere) => builder.add_user(*sphere),
-                Geometry::Disk(disk) => builder.add_user(*disk),
-                Geometry::Cylinder(cylinder) => builder.add_user(*cylinder),
+        let in_scene = |shapes: &[Shape]| {
+            let mut builder = SceneBuilder::new(&device, build);
+            for shape in shapes {
+                add(&mut builder, shape)?;
+            }
+            Ok(builder)
+        };
+        let groups = scene.groups.iter().map(|group| {
+            let shapes = in_scene(&scene.shapes[group.shapes.clone()])?;
+            Ok(Arc::new(shapes.build()?))
+        });
+        let groups: Vec<Arc<EmbreeScene>> = groups.collect::<Result<_, EmbreeError>>()?;
+        let in_world = scene.shapes_in_world();
+        let mut builder = in_scene(in_world)?;
+        let mut first_shapes = Vec::with_capacity(scene.instances.len());
+        for instance in &scene.instances {
+            let group = instance.group.index();
+            let to_world = Affine {
+                axes: instance.axes().map(Vec3::into),
+                origin: instance.origin().into(),
             };
+            builder.add_instance(embree::Instance::new(groups[group].clone(), to_world)?);
+            first_shapes.push(scene.groups[group].shapes.start as u32);
         }
         Ok(Self {
             scene: builder.build()?,
+            first_instance: in_world.len() as u32,
+            first_shapes,
         })
+    }
+
+    /// Finds the nearest hits of a stream of rays in world space.
+    pub fn nearest(&self, rays: &mut Rays, hits: &mut Hits, coherence: Coherence) {
+        self.scene.intersect_stream(rays, hits, coherence);
+        if self.scene.has_instances() {
+            hits.renumber_instanced(|instance, geometry| self.shape_number(instance, geometry));
+        }
+    }
+
+    /// Finds the nearest hit of one ray in world space.
+    pub fn nearest1(&self, ray: &mut RayHit1, coherence: Coherence) {
+        self.scene.intersect1(ray, coherence);
+        let hit = &mut ray.hit;
+        if hit.is_hit() && hit.instance_id != INVALID_GEOMETRY {
+            hit.geometry_id = self.shape_number(hit.instance_id, hit.geometry_id);
+        }
+    }
+
+    /// The number of the shape that is number `geometry` of the group that the instance number `instance` shows.
+    #[inline]
+    fn shape_number(&self, instance: u32, geometry: u32) -> u32 {
+        self.first_shapes[(instance - self.first_instance) as usize] + geometry
     }
 
     /// The intersection layer's scene.
@@ -67,6 +112,26 @@ impl Accelerator {
     pub fn shape<'s>(&self, scene: &'s Scene, geometry: u32) -> Option<&'s Shape> {
         scene.shapes.get(geometry as usize)
     }
+
+    /// The instance that a hit's instance number names; `None` for a hit outside of instances.
+    #[inline]
+    pub fn instance<'s>(&self, scene: &'s Scene, instance: u32) -> Option<&'s Instance> {
+        let index = instance.checked_sub(self.first_instance)?;
+        scene.instances.get(index as usize)
+    }
+}
+
+fn add(builder: &mut SceneBuilder, shape: &Shape) -> Result<(), EmbreeError> {
+    match &shape.geometry {
+        Geometry::Triangles(mesh) => {
+            let mesh = TriangleMesh::new(mesh.vertices().clone(), mesh.indices().clone())?;
+            builder.add_triangles(mesh)
+        }
+        Geometry::Sphere(sphere) => builder.add_user(*sphere),
+        Geometry::Disk(disk) => builder.add_user(*disk),
+        Geometry::Cylinder(cylinder) => builder.add_user(*cylinder),
+    };
+    Ok(())
 }
 
 fn bounds_about(center: Vec3, half_extent: Vec3) -> Bounds {
@@ -108,9 +173,7 @@ impl UserGeometry for Disk {
     }
 
     fn bounds(&self, _primitive: u32) -> Bounds {
-        // The extent of an ellipse along an axis is the length of its two half axes' components there.
-        let squares = self.axis_u * self.axis_u + self.axis_v * self.axis_v;
-        bounds_about(self.center, squares.map(f32::sqrt))
+        bounds_about(self.center, self.half_extent())
     }
 
     fn intersect(&self, _primitive: u32, ray: &UserRay) -> Option<UserHit> {
@@ -146,3 +209,6 @@ impl UserGeometry for Cylinder {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

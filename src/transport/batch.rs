@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::variant::Variant;
 use crate::embree::{Hits, Rays};
-use crate::lanes::VectorColumn;
+use crate::lanes::{CHUNK, VectorColumn};
 use crate::room::{make_room, resize};
 use crate::sampling::{SequencePoint, SolidAnglePdf};
 use crate::scene::{HitCoordinates, Refraction};
@@ -69,6 +69,9 @@ pub(super) struct Vertices<C: Colour, V: Variant> {
     pub geometric_normal: VectorColumn,
     /// Unit shading normal of the side that was hit, in world space.
     pub normal: VectorColumn,
+    /// By how much rays start off the surface at the least, in scene units (see [`Instance::clearance`](crate::scene::Instance::clearance)).
+    /// Empty where the scene has no instances.
+    pub clearance: Vec<f32>,
     /// How that side scatters light at the path's wavelengths.
     pub bsdf: Vec<V::Scattering<C::Spectrum>>,
 }
@@ -168,6 +171,7 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
             position: VectorColumn::default(),
             geometric_normal: VectorColumn::default(),
             normal: VectorColumn::default(),
+            clearance: Vec::new(),
             bsdf: Vec::new(),
         }
     }
@@ -185,6 +189,22 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
         }
     }
 
+    /// The clearances of a chunk of vertices, put into `lanes`; `None` where the scene has no instances.
+    #[inline(always)]
+    pub fn clearances<'l>(
+        &self,
+        chunk: impl Iterator<Item = usize>,
+        lanes: &'l mut [f32; CHUNK],
+    ) -> Option<&'l [f32; CHUNK]> {
+        if !V::INSTANCES || self.clearance.is_empty() {
+            return None;
+        }
+        for (lane, i) in lanes.iter_mut().zip(chunk) {
+            *lane = self.clearance[i];
+        }
+        Some(lanes)
+    }
+
     /// Empties the vertices and makes room for `count`.
     pub fn restart(&mut self, count: usize) {
         make_room(&mut self.path, count);
@@ -193,6 +213,9 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
         self.position.restart(count);
         self.geometric_normal.restart(count);
         self.normal.restart(count);
+        if V::INSTANCES {
+            self.clearance.clear();
+        }
         make_room(&mut self.bsdf, count);
     }
 }

@@ -6,7 +6,7 @@ use multiversion::multiversion;
 use super::batch::{CameraPaths, ShadowRays, Vertices};
 use super::engine::Engine;
 use super::light_chunk::LightChunk;
-use super::offset::leave_surface;
+use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use, power_heuristic};
@@ -41,6 +41,7 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     let mut bsdfs = BsdfValues::new();
     let mut rays = ShadowChunk::new();
     let mut points = [SequencePoint::default(); CHUNK];
+    let mut clearances = [0.0; CHUNK];
     let starts = (0..vertices.len()).step_by(CHUNK);
     for (sample, start) in (0..samples.emitters).flat_map(|s| starts.clone().map(move |i| (s, i))) {
         let chunk = start..vertices.len().min(start + CHUNK);
@@ -60,7 +61,8 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
             &mut bsdfs,
         );
         normals.load(vertices.geometric_normal.slices(chunk.clone()));
-        rays.aim(&positions, &normals, &lights);
+        let clearances = vertices.clearances(chunk.clone(), &mut clearances);
+        rays.aim(&positions, &normals, clearances, &lights);
         rays.weigh(&lights.pdf, &lights.probability, &bsdfs.pdf, samples);
 
         let mut kept = KeptLanes::none();
@@ -107,7 +109,7 @@ impl ShadowChunk {
         }
     }
 
-    /// From the vertices at `positions`, with unit geometric `normals`, to the light that was drawn for them.
+    /// From the vertices at `positions`, with unit geometric `normals` and perhaps `clearances`, to the light that was drawn for them.
     ///
     /// A ray ends off the light's surface, as it starts off its own: a light that is curved, or that lights itself, would
     /// otherwise be in its own way where the ray grazes it.
@@ -116,11 +118,16 @@ impl ShadowChunk {
         &mut self,
         positions: &VectorLanes<CHUNK>,
         normals: &VectorLanes<CHUNK>,
+        clearances: Option<&[f32; CHUNK]>,
         lights: &LightChunk<C>,
     ) {
         for i in 0..CHUNK {
             let direction = lights.direction.get(i);
-            let origin = leave_surface(positions.get(i), normals.get(i), direction);
+            let (position, normal) = (positions.get(i), normals.get(i));
+            let origin = match clearances {
+                None => leave_surface(position, normal, direction),
+                Some(clearances) => leave_surface_by(clearances[i], position, normal, direction),
+            };
             let offset = lights.target.get(i) - origin;
             let length = offset.length();
             let is_near = (lights.distance[i] < f32::INFINITY) & (length > 0.0);

@@ -11,6 +11,7 @@ use super::settings::DirectLight;
 use super::surface::SurfaceChunk;
 use super::variant::{Arrivals, Scattering, Variant};
 use crate::lanes::{CHUNK, VectorLanes};
+use crate::room::make_room;
 use crate::sampling::{Sampler, SolidAnglePdf, power_heuristic};
 use crate::scene::{Emitter, EmitterId};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -34,11 +35,18 @@ pub(super) fn arrive<C: Colour, V: Variant>(
 ) {
     vertices.restart(segments.len());
     let hides_surroundings = depth == 0 && engine.settings.hide_emitters;
+    let has_instances = V::INSTANCES && !engine.scene.instances.is_empty();
+    if has_instances {
+        make_room(&mut vertices.clearance, segments.len());
+    }
     let mut surfaces = SurfaceChunk::new();
     let mut sides = SideChunk::new();
     for start in (0..segments.len()).step_by(CHUNK) {
         let chunk = start..segments.len().min(start + CHUNK);
         surfaces.locate(engine, segments, chunk.clone());
+        if has_instances {
+            surfaces.place(engine, segments, chunk.clone());
+        }
         sides.find(
             segments.rays.directions().map(|axis| &axis[chunk.clone()]),
             &surfaces.points.shading_normal,
@@ -79,6 +87,13 @@ pub(super) fn arrive<C: Colour, V: Variant>(
             .geometric_normal
             .append(&points.geometric_normal, &scattering);
         vertices.normal.append(&sides.normal, &scattering);
+        if has_instances {
+            let clearance = |lane| {
+                let instance = engine.instance(segments, segment_of(lane));
+                instance.map_or(0.0, |instance| instance.clearance(&points.get(lane)))
+            };
+            vertices.clearance.extend(scattering.iter().map(clearance));
+        }
     }
 }
 

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use super::accelerator::Accelerator;
+use super::batch::Segments;
 use super::emission_table::EmissionTable;
 use super::settings::TransportSettings;
 use crate::embree::Version;
 use crate::film::FilterSampler;
 use crate::sampling::StreamKey;
-use crate::scene::{CameraView, Emitter, LightChoice, Parallelogram, Scene};
+use crate::scene::{CameraView, Emitter, Instance, LightChoice, Parallelogram, Scene};
+use crate::spectrum::Colour;
 use crate::walk::Strategy;
 
 /// A scene ready to be traced, shared by all threads.
@@ -82,6 +84,17 @@ impl Engine {
     /// The version of the intersection layer's library.
     pub fn embree_version(&self) -> Version {
         self.accelerator.scene().device().version()
+    }
+
+    /// The instance in which segment `i` met a surface, if it did in one.
+    #[inline]
+    pub(super) fn instance<C: Colour>(
+        &self,
+        segments: &Segments<C>,
+        i: usize,
+    ) -> Option<&Instance> {
+        self.accelerator
+            .instance(&self.scene, segments.hits.instance_id(i))
     }
 
     /// The rectangle that emitter number `emitter` is, if it is one.

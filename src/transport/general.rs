@@ -15,6 +15,7 @@ impl Variant for General {
     type Scattering<S: SpectrumArithmetic> = Local<S>;
     const CHOOSES_LOBES: bool = true;
     const REFRACTS: bool = true;
+    const INSTANCES: bool = true;
 }
 
 /// A bsdf where a path has met it.
@@ -46,7 +47,7 @@ impl<S: SpectrumArithmetic> Local<S> {
         let (material, point) = (arrival.material, arrival.point());
         let facing = arrival.side.facing(point.shading_normal);
         let (frame, front, parameters) = if material.needs_parameters() {
-            let parameters = arrival.shape.geometry.parameters(&arrival.hit(), &point);
+            let parameters = arrival.parameters();
             let front = parameters.shading_frame(point.shading_normal);
             let frame = Frame {
                 normal: facing,

@@ -32,10 +32,7 @@ pub(super) fn look_through<C: Colour>(
         let mut nearest = segments.rays.tfar(i);
         let through = loop {
             let mut ray = RayHit1::new(Ray1::new(origin, direction, nearest.next_up(), far));
-            engine
-                .accelerator
-                .scene()
-                .intersect1(&mut ray, Coherence::Incoherent);
+            engine.accelerator.nearest1(&mut ray, Coherence::Incoherent);
             statistics.rays += 1;
             nearest = ray.ray.tfar;
             if !glows(ray.hit.geometry_id) {

@@ -16,9 +16,7 @@ pub(super) fn nearest<C: Colour>(
     statistics: &mut TraceStatistics,
 ) {
     let start = Instant::now();
-    accelerator
-        .scene()
-        .intersect_stream(&mut segments.rays, &mut segments.hits, coherence);
+    accelerator.nearest(&mut segments.rays, &mut segments.hits, coherence);
     statistics.intersection_time += start.elapsed();
     statistics.rays += segments.len() as u64;
 }

@@ -13,6 +13,7 @@ impl Variant for Matte {
     type Scattering<S: SpectrumArithmetic> = Diffuse<S>;
     const CHOOSES_LOBES: bool = false;
     const REFRACTS: bool = false;
+    const INSTANCES: bool = false;
 }
 
 impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {

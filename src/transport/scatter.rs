@@ -4,7 +4,7 @@ use multiversion::multiversion;
 
 use super::batch::{Segments, Vertices};
 use super::engine::Engine;
-use super::offset::leave_surface;
+use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
@@ -37,6 +37,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     let mut normals = VectorLanes::default();
     let mut samples = BsdfSamples::new();
     let mut origins = VectorLanes::default();
+    let mut clearances = [0.0; CHUNK];
     for children in children.chunks(CHUNK) {
         for (lane, child) in children.iter().enumerate() {
             normals.put(lane, vertices.normal.get(child.parent as usize));
@@ -57,14 +58,19 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         let parents = children.iter().map(|child| child.parent as usize);
         let bsdfs = parents.clone().map(|parent| &vertices.bsdf[parent]);
         V::Scattering::sample(bsdfs, &normals, &numbers, &mut samples);
-        for (lane, parent) in parents.enumerate() {
+        for (lane, parent) in parents.clone().enumerate() {
             normals.put(lane, vertices.geometric_normal.get(parent));
             origins.put(lane, vertices.position.get(parent));
         }
+        let clearances = vertices.clearances(parents, &mut clearances);
         for lane in 0..CHUNK {
             let (position, normal) = (origins.get(lane), normals.get(lane));
             let direction = samples.direction.get(lane);
-            origins.put(lane, leave_surface(position, normal, direction));
+            let origin = match clearances {
+                None => leave_surface(position, normal, direction),
+                Some(clearances) => leave_surface_by(clearances[lane], position, normal, direction),
+            };
+            origins.put(lane, origin);
         }
 
         let mut kept = KeptLanes::none();

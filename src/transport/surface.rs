@@ -20,7 +20,7 @@ pub(super) struct SurfaceChunk<'s> {
     next_shapes: [Option<&'s Shape>; CHUNK],
     corners: [[u32; 3]; CHUNK],
     triangles: CornerLanes<CHUNK>,
-    /// Those of misses mean nothing.
+    /// Those of misses mean nothing. Those in instances are in the space of the group until they are [placed](Self::place).
     pub points: SurfaceLanes<CHUNK>,
 }
 
@@ -97,6 +97,24 @@ impl<'s> SurfaceChunk<'s> {
             }) = next
             {
                 mesh.prefetch_corners(primitive);
+            }
+        }
+    }
+
+    /// Moves the points of the chunk that stand in instances from the space of their group to the world. To be called after
+    /// [`Self::locate`] in scenes that have instances.
+    pub fn place<C: Colour>(
+        &mut self,
+        engine: &Engine,
+        segments: &Segments<C>,
+        chunk: Range<usize>,
+    ) {
+        for (lane, i) in chunk.enumerate() {
+            if self.shapes[lane].is_some()
+                && let Some(instance) = engine.instance(segments, i)
+            {
+                self.points
+                    .set(lane, &instance.point(&self.points.get(lane)));
             }
         }
     }

@@ -12,7 +12,7 @@ use super::surface::SurfaceChunk;
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::{Sampler, SequencePoint};
 use crate::scene::{
-    BsdfSamples, BsdfValues, HitCoordinates, Material, Refraction, Shape, Side, SurfacePoint,
+    BsdfSamples, BsdfValues, Material, Refraction, Shape, Side, SurfaceParameters, SurfacePoint,
 };
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -26,6 +26,9 @@ pub(super) trait Variant: Send + Sync + 'static {
 
     /// Whether light may be refracted.
     const REFRACTS: bool;
+
+    /// Whether surfaces may stand in instances.
+    const INSTANCES: bool;
 }
 
 /// A chunk of paths that arrive somewhere. What is known of each is found by those who ask: a variant does not pay for what it
@@ -108,10 +111,14 @@ impl<C: Colour> Arrival<'_, C> {
         self.all.surfaces.points.get(self.lane)
     }
 
-    /// The same in the terms of the intersection layer.
+    /// Where it lies on its shape.
     #[inline]
-    pub fn hit(&self) -> HitCoordinates {
-        self.all.segments.hit(self.index())
+    pub fn parameters(&self) -> SurfaceParameters<'_> {
+        let (geometry, hit) = (&self.shape.geometry, self.all.segments.hit(self.index()));
+        match self.all.engine.instance(self.all.segments, self.index()) {
+            Some(instance) => instance.parameters(geometry, &hit),
+            None => geometry.parameters(&hit, &self.point()),
+        }
     }
 
     /// The unit direction in which the path came, in world space.

@@ -28,12 +28,13 @@ fn context(coherence: Coherence) -> raw::RTCIntersectContext {
 /// How rays can be traced as asked when they ask for occlusion.
 ///
 /// Debian's build of Embree 3.13.5 can hang for ever, or read beyond its stack, when coherent packets
-/// of 16 rays, or streams of them, are tested for occlusion in a scene both robust and compact on a
-/// processor with AVX-512: the compiler keeps a mask of 16 bits and reads 64 back. Such scenes are
-/// therefore traced as if the rays were incoherent; the answer is the same.
+/// of 16 rays, or streams of them, are tested for occlusion on a processor with AVX-512: the compiler
+/// keeps a mask of 16 bits and reads 64 back. It happens in scenes both robust and compact, and in all
+/// scenes with instances. Those are therefore traced as if the rays were incoherent; the answer is the
+/// same.
 pub fn occlusion_coherence(scene: &Scene, asked: Coherence) -> Coherence {
     let options = scene.options();
-    if options.robust && options.compact {
+    if scene.has_instances() || options.robust && options.compact {
         Coherence::Incoherent
     } else {
         asked
@@ -135,9 +136,14 @@ fn ray_pointers(rays: &mut Rays) -> raw::RTCRayNp {
     }
 }
 
-/// The arrays of the hits; the instance is not asked for.
+/// The arrays of the hits; the instance is asked for where there are any.
 fn hit_pointers(hits: &mut Hits) -> raw::RTCHitNp {
     let [normal_x, normal_y, normal_z] = hits.normal.each_mut().map(|axis| axis.as_mut_ptr());
+    let instances = if hits.instance_id.is_empty() {
+        null_mut()
+    } else {
+        hits.instance_id.as_mut_ptr()
+    };
     raw::RTCHitNp {
         Ng_x: normal_x,
         Ng_y: normal_y,
@@ -146,7 +152,7 @@ fn hit_pointers(hits: &mut Hits) -> raw::RTCHitNp {
         v: hits.v.as_mut_ptr(),
         primID: hits.primitive_id.as_mut_ptr(),
         geomID: hits.geometry_id.as_mut_ptr(),
-        instID: [null_mut()],
+        instID: [instances],
     }
 }
 

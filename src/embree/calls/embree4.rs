@@ -166,6 +166,9 @@ fn store<const K: usize>(hit: &HitPacket<K>, hits: &mut Hits, chunk: usize) {
     hits.v.chunks_mut()[chunk] = hit.v;
     hits.primitive_id.chunks_mut()[chunk] = hit.primitive_id;
     hits.geometry_id.chunks_mut()[chunk] = hit.geometry_id;
+    if let Some(instances) = hits.instance_id.chunks_mut().get_mut(chunk) {
+        *instances = hit.instance_id;
+    }
 }
 
 /// The rays that a stream traces: the first `count` ones, as far as they are active.

@@ -73,6 +73,10 @@ pub(super) fn answer(ray_hit: &RayHit1) -> Answer {
     }
 }
 
+fn in_instance(instance_id: u32, hit: Hit1) -> Hit1 {
+    Hit1 { instance_id, ..hit }
+}
+
 pub(super) fn is_active(ray: &Ray1) -> bool {
     ray.tnear <= ray.tfar
 }
@@ -107,14 +111,17 @@ pub(super) fn answers<const K: usize>(packets: &[RayHitPacket<K>], count: usize)
         .map(|i| {
             let (RayHitPacket { ray, hit }, lane) = (&packets[i / K], i % K);
             Answer {
-                hit: Hit1 {
-                    normal: hit.normal.map(|axis| axis[lane]),
-                    u: hit.u[lane],
-                    v: hit.v[lane],
-                    primitive_id: hit.primitive_id[lane],
-                    geometry_id: hit.geometry_id[lane],
-                    ..Hit1::MISS
-                },
+                hit: in_instance(
+                    hit.instance_id[lane],
+                    Hit1 {
+                        normal: hit.normal.map(|axis| axis[lane]),
+                        u: hit.u[lane],
+                        v: hit.v[lane],
+                        primitive_id: hit.primitive_id[lane],
+                        geometry_id: hit.geometry_id[lane],
+                        ..Hit1::MISS
+                    },
+                ),
                 tfar: ray.tfar[lane],
             }
         })
@@ -192,14 +199,17 @@ fn intersect_stream(scene: &Scene, rays: &[Ray1], coherence: Coherence) -> Vec<A
     assert_eq!(hits.len(), rays.len());
     (0..rays.len())
         .map(|i| Answer {
-            hit: Hit1 {
-                normal: hits.normal(i),
-                u: hits.uv(i)[0],
-                v: hits.uv(i)[1],
-                primitive_id: hits.primitive_id(i),
-                geometry_id: hits.geometry_id(i),
-                ..Hit1::MISS
-            },
+            hit: in_instance(
+                hits.instance_id(i),
+                Hit1 {
+                    normal: hits.normal(i),
+                    u: hits.uv(i)[0],
+                    v: hits.uv(i)[1],
+                    primitive_id: hits.primitive_id(i),
+                    geometry_id: hits.geometry_id(i),
+                    ..Hit1::MISS
+                },
+            ),
             tfar: stream.tfar(i),
         })
         .collect()

@@ -1,7 +1,8 @@
-//! Every form of call against intersections by brute force, and user geometry against closed forms.
+//! Every form of call against intersections by brute force, user geometry against closed forms, and instances against both.
 
 mod brute_force;
 mod forms;
+mod instances;
 mod plain_c_forms;
 mod triangles;
 mod user_geometry;

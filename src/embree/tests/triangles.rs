@@ -18,16 +18,8 @@ struct Soup {
 
 impl Soup {
     fn new(count: usize) -> Self {
-        let mut numbers = Numbers(1);
-        let mut triangle = |_| {
-            let centre = numbers.point();
-            [(); 3].map(|()| {
-                let offset = numbers.point();
-                std::array::from_fn(|axis| centre[axis] + 0.3 * offset[axis])
-            })
-        };
         Self {
-            triangles: (0..count).map(&mut triangle).collect(),
+            triangles: random_triangles(1, count),
             split: count / 3,
         }
     }
@@ -51,7 +43,20 @@ impl Soup {
     }
 }
 
-fn mesh(triangles: &[[[f32; 3]; 3]]) -> TriangleMesh {
+/// Triangles about as large as the gaps between a hundred of them, by `seed`.
+pub(super) fn random_triangles(seed: u64, count: usize) -> Vec<[[f32; 3]; 3]> {
+    let mut numbers = Numbers(seed);
+    let triangle = |_| {
+        let centre = numbers.point();
+        [(); 3].map(|()| {
+            let offset = numbers.point();
+            std::array::from_fn(|axis| centre[axis] + 0.3 * offset[axis])
+        })
+    };
+    (0..count).map(triangle).collect()
+}
+
+pub(super) fn mesh(triangles: &[[[f32; 3]; 3]]) -> TriangleMesh {
     let vertices = triangles.iter().flatten().copied();
     let indices = (0..triangles.len() as u32)
         .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
@@ -64,7 +69,7 @@ fn mesh(triangles: &[[[f32; 3]; 3]]) -> TriangleMesh {
 }
 
 /// Rays from everywhere to everywhere; some are short, some inactive.
-fn rays(count: usize) -> Vec<Ray1> {
+pub(super) fn random_rays(count: usize) -> Vec<Ray1> {
     let mut numbers = Numbers(2);
     (0..count)
         .map(|i| {
@@ -106,7 +111,7 @@ fn assert_same(soup: &Soup, ray: &Ray1, answer: &Answer, expected: Option<Neares
 #[test]
 fn every_form_of_call_agrees_with_brute_force() {
     let (soup, device) = (Soup::new(150), device());
-    let rays = rays(1000);
+    let rays = random_rays(1000);
     let expected: Vec<_> = rays
         .iter()
         .map(|ray| nearest(ray, &soup.triangles))
@@ -159,14 +164,14 @@ fn a_stream_that_is_used_again_forgets_the_rays_before() {
     let (mut stream, mut hits) = (Rays::new(), Hits::new());
     for length in [1000, 17, 3, 200] {
         stream.resize(length);
-        for (i, ray) in rays(length).iter().enumerate() {
+        for (i, ray) in random_rays(length).iter().enumerate() {
             stream.set(i, ray.origin, ray.direction, ray.tnear, ray.tfar);
         }
         stream.deactivate(length / 2);
         scene.intersect_stream(&mut stream, &mut hits, Coherence::Incoherent);
         assert_eq!((stream.len(), hits.len()), (length, length));
         assert!(!hits.is_hit(length / 2));
-        for (i, ray) in rays(length).iter().enumerate() {
+        for (i, ray) in random_rays(length).iter().enumerate() {
             if let (Ok(expected), true) = (nearest(ray, &soup.triangles), i != length / 2) {
                 assert_eq!(hits.is_hit(i), expected.is_some(), "ray {i} of {length}");
             }
@@ -206,7 +211,7 @@ fn an_empty_scene_is_missed() {
         .build()
         .expect("a scene may be empty");
     for (name, intersect) in intersect_forms() {
-        let answers = intersect(&scene, &rays(40), Coherence::Coherent);
+        let answers = intersect(&scene, &random_rays(40), Coherence::Coherent);
         assert!(answers.iter().all(|answer| !answer.hit.is_hit()), "{name}");
     }
 }
@@ -217,7 +222,7 @@ fn a_scene_is_traced_by_several_threads() {
     let scene = soup.scene(&device(), BuildOptions::default());
     let (_, intersect) = INTERSECT[4];
     let trace = || -> Vec<u32> {
-        let answers = intersect(&scene, &rays(1000), Coherence::Incoherent);
+        let answers = intersect(&scene, &random_rays(1000), Coherence::Incoherent);
         answers.iter().map(|answer| answer.tfar.to_bits()).collect()
     };
     let alone = trace();

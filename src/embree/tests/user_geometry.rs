@@ -8,20 +8,17 @@ use super::forms::{INTERSECT, intersect_forms, occluded_forms};
 use super::{Numbers, all_options, device};
 
 #[derive(Clone, Copy)]
-struct Sphere {
-    centre: [f32; 3],
-    radius: f32,
+pub(super) struct Sphere {
+    pub centre: [f32; 3],
+    pub radius: f32,
 }
 
 impl Sphere {
     /// Both t of a line through the sphere, in double precision.
-    fn crossings(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<[f64; 2]> {
+    pub fn crossings(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<[f64; 2]> {
         let [mut a, mut b, mut c] = [0.0, 0.0, -f64::from(self.radius).powi(2)];
         for axis in 0..3 {
-            let (from, to) = (
-                f64::from(origin[axis] - self.centre[axis]),
-                f64::from(direction[axis]),
-            );
+            let (from, to) = (origin[axis] - f64::from(self.centre[axis]), direction[axis]);
             a += to * to;
             b += from * to;
             c += from * from;
@@ -31,10 +28,10 @@ impl Sphere {
     }
 }
 
-struct Spheres {
-    spheres: Vec<Sphere>,
+pub(super) struct Spheres {
+    pub spheres: Vec<Sphere>,
     /// Whether meeting sphere 1 panics.
-    panics: bool,
+    pub panics: bool,
 }
 
 impl UserGeometry for Spheres {
@@ -56,7 +53,8 @@ impl UserGeometry for Spheres {
             "sphere one is out of order"
         );
         let sphere = self.spheres[primitive as usize];
-        let crossings = sphere.crossings(ray.origin, ray.direction)?;
+        let crossings =
+            sphere.crossings(ray.origin.map(f64::from), ray.direction.map(f64::from))?;
         let inside = |t: &f32| *t > ray.tnear && *t < ray.tfar;
         let t = crossings.map(|t| t as f32).into_iter().find(inside)?;
         Some(UserHit {
@@ -70,7 +68,7 @@ impl UserGeometry for Spheres {
     }
 }
 
-const SPHERES: [Sphere; 2] = [
+pub(super) const SPHERES: [Sphere; 2] = [
     Sphere {
         centre: [-0.4, 0.1, 0.0],
         radius: 0.5,
@@ -105,7 +103,8 @@ fn expected(ray: &Ray1, spheres: &[Sphere]) -> Option<(u32, f64)> {
         .iter()
         .zip(0..)
         .flat_map(|(sphere, index)| {
-            let crossings = sphere.crossings(ray.origin, ray.direction);
+            let crossings =
+                sphere.crossings(ray.origin.map(f64::from), ray.direction.map(f64::from));
             crossings.into_iter().flatten().map(move |t| (index, t))
         })
         .filter(|(_, t)| *t > 0.0 && *t < f64::from(ray.tfar))

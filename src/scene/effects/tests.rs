@@ -231,6 +231,24 @@ fn lights() {
 }
 
 #[test]
+fn instancing() {
+    let group = format!(
+        r#"<shape type="shapegroup" id="group">{}{}</shape>"#,
+        sphere("diffuse", ""),
+        sphere("conductor", "")
+    );
+    assert!(on(&group).is_empty());
+    let shown = format!(r#"{group}<shape type="instance"><ref id="group"/></shape>"#);
+    assert_eq!(on(&shown), ["mirrors", "instancing"]);
+    let matte = shown.replace("conductor", "diffuse");
+    assert_eq!(on(&matte), ["instancing"]);
+    assert!(!load(&(matte + PERSPECTIVE)).unwrap().is_matte());
+    let nested =
+        r#"<shape type="instance"><shape type="shapegroup"><shape type="sphere"/></shape></shape>"#;
+    assert_eq!(on(nested), ["instancing"]);
+}
+
+#[test]
 fn cameras() {
     let camera = |plugin, content: &str| {
         of(&load(&format!(r#"<sensor type="{plugin}">{content}</sensor>"#)).unwrap())

@@ -27,7 +27,7 @@ impl Place {
             Emitter::Area(light) if light.radiance.is_black() => None,
             Emitter::Area(light) => {
                 let geometry = &shapes[light.shape.index()].geometry;
-                let (min, max) = corners(geometry);
+                let [min, max] = geometry.bounds();
                 Some(Self::Near(LightBounds {
                     min,
                     max,
@@ -76,34 +76,6 @@ impl Place {
 
 fn luminance(curve: &SpectralCurve) -> f32 {
     Vec3::from(curve.rgb()).dot(Vec3::new(0.212_671, 0.715_160, 0.072_169))
-}
-
-/// Least and greatest coordinates of a shape.
-fn corners(geometry: &Geometry) -> (Vec3, Vec3) {
-    match geometry {
-        Geometry::Triangles(mesh) => {
-            let used = mesh.indices().iter().flatten();
-            let positions = used.map(|&index| Vec3::from(mesh.vertices().position(index)));
-            positions.fold(
-                (Vec3::INFINITY, Vec3::NEG_INFINITY),
-                |(min, max), position| (min.min(position), max.max(position)),
-            )
-        }
-        Geometry::Sphere(sphere) => (sphere.center - sphere.radius, sphere.center + sphere.radius),
-        Geometry::Disk(disk) => {
-            // The extent of an ellipse along an axis is the length of its two half axes' components there.
-            let squares = disk.axis_u * disk.axis_u + disk.axis_v * disk.axis_v;
-            let half = squares.map(f32::sqrt);
-            (disk.center - half, disk.center + half)
-        }
-        Geometry::Cylinder(cylinder) => {
-            let (start, end) = (cylinder.start, cylinder.start + cylinder.axis);
-            (
-                start.min(end) - cylinder.radius,
-                start.max(end) + cylinder.radius,
-            )
-        }
-    }
 }
 
 /// The normals on whose side a shape shines.

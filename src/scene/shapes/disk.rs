@@ -55,6 +55,12 @@ impl Disk {
         self.axis_u.cross(self.axis_v).normalize()
     }
 
+    /// How far the rim goes from the centre along each axis of world space.
+    pub fn half_extent(&self) -> Vec3 {
+        // The extent of an ellipse along an axis is the length of its two half axes' components there.
+        (self.axis_u * self.axis_u + self.axis_v * self.axis_v).map(f32::sqrt)
+    }
+
     /// Where a ray meets the disk with a distance in (`near`, `far`).
     pub fn intersect(&self, origin: Vec3, direction: Vec3, near: f32, far: f32) -> Option<DiskHit> {
         let (axis_u, axis_v) = (self.axis_u.as_dvec3(), self.axis_v.as_dvec3());

@@ -1,4 +1,4 @@
-//! Shapes: what rays can hit, in world space.
+//! Shapes: what rays can hit, in world space, or in the space of the group that they belong to.
 //!
 //! Triangle meshes are intersected by Embree itself; spheres, disks and cylinders are exact and bring their own
 //! intersection. Every shape can also be sampled by area (or better), so that every shape can be a light.
@@ -6,29 +6,48 @@
 mod cube;
 mod cylinder;
 mod disk;
+mod extent;
+mod instance;
 mod lanes;
 mod mesh_file;
 mod mesh_sampling;
 mod parameters;
 mod rectangle;
+mod shape_group;
 mod sphere;
 mod triangles;
 
 pub use cylinder::{Cylinder, CylinderHit};
 pub use disk::{Disk, DiskHit};
+pub use instance::Instance;
 pub(crate) use lanes::{CornerLanes, SurfaceLanes};
 pub(crate) use mesh_sampling::Parallelogram;
 pub use parameters::{AttributesAt, SurfaceParameters};
+pub use shape_group::ShapeGroup;
 pub use sphere::Sphere;
 pub use triangles::{TriangleAttributes, Triangles};
 
 use glam::{DMat3, DMat4, Vec3};
 
+use self::extent::FARTHEST;
 use super::error::SceneError;
 use super::load::Loader;
 use super::xml::Object;
 use super::{EmitterId, MaterialId};
 use crate::sampling::SolidAnglePdf;
+
+const SUPPORTED: [&str; 10] = [
+    "obj",
+    "ply",
+    "serialized",
+    "rectangle",
+    "cube",
+    "sphere",
+    "disk",
+    "cylinder",
+    "shapegroup",
+    "instance",
+];
 
 /// The form of a shape of a scene file.
 pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, SceneError> {
@@ -46,16 +65,7 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, Sce
         "sphere" => Sphere::load(object, &placement).map(Geometry::Sphere),
         "disk" => Ok(Geometry::Disk(Disk::load(&placement))),
         "cylinder" => Cylinder::load(object, &placement).map(Geometry::Cylinder),
-        _ => Err(object.unsupported(&[
-            "obj",
-            "ply",
-            "serialized",
-            "rectangle",
-            "cube",
-            "sphere",
-            "disk",
-            "cylinder",
-        ])),
+        _ => Err(object.unsupported(&SUPPORTED)),
     }?;
     if geometry.is_within_reach() {
         return Ok(geometry);
@@ -65,9 +75,6 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, Sce
         object.plugin
     )))
 }
-
-/// The largest coordinate of a shape. Embree leaves out, without a word, what lies beyond 1.844e18.
-const FARTHEST: f32 = 1e18;
 
 /// How a shape is put into the world.
 pub(super) struct Placement {
@@ -123,7 +130,7 @@ pub struct Shape {
     pub emitter: Option<EmitterId>,
 }
 
-/// The form of a shape, in world space.
+/// The form of a shape, in world space, or in the space of the group that it belongs to.
 #[derive(Debug)]
 pub enum Geometry {
     /// A triangle mesh (also rectangles and cubes, which triangles represent exactly).
@@ -206,7 +213,7 @@ pub struct HitCoordinates {
     pub u: f32,
     /// Second surface coordinate.
     pub v: f32,
-    /// The geometric normal as the intersection reported it, any length, in world space.
+    /// The geometric normal as the intersection reported it, any length, in the shape's space.
     pub normal: Vec3,
 }
 
@@ -259,33 +266,6 @@ impl Geometry {
             Self::Triangles(_) | Self::Disk(_) | Self::Cylinder(_) => {
                 ShapeSample::by_area(reference, *point, self.area()).pdf
             }
-        }
-    }
-
-    /// Whether rays can find the shape: its coordinates are neither too large for the intersection layer, nor so small
-    /// that an exact shape loses its area to rounding (a mesh may have triangles without one).
-    fn is_within_reach(&self) -> bool {
-        let near = |point: Vec3| point.abs().max_element() <= FARTHEST;
-        match self {
-            Self::Triangles(mesh) => {
-                let mut positions = mesh.vertices().positions();
-                positions.all(|position| near(position.into()))
-            }
-            Self::Sphere(Sphere { center, radius, .. }) => {
-                near(*center) && *radius <= FARTHEST && self.area().is_normal()
-            }
-            Self::Disk(Disk {
-                center,
-                axis_u,
-                axis_v,
-                ..
-            }) => [*center, *axis_u, *axis_v].into_iter().all(near) && self.area().is_normal(),
-            Self::Cylinder(Cylinder {
-                start,
-                axis,
-                radius,
-                ..
-            }) => near(*start) && near(*axis) && *radius <= FARTHEST && self.area().is_normal(),
         }
     }
 
