@@ -32,11 +32,13 @@ pub fn run(args: &ExplainArgs) -> Result<(), Box<dyn Error>> {
     println!("{}", scene.name);
     match effects.not_matte() {
         [] => {
-            println!("engine: matte, for all surfaces reflect diffusely, the same at every point")
+            println!(
+                "engine: matte, for all surfaces reflect diffusely and glow, each the same at every point"
+            )
         }
         not_matte => {
             println!(
-                "engine: general, for these surfaces do more than to reflect diffusely, the same at every point:"
+                "engine: general, for these do more than to reflect diffusely and to glow, the same at every point:"
             );
             for line in listed(not_matte.iter()) {
                 println!("  {line}");

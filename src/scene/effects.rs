@@ -132,9 +132,14 @@ impl Effects {
         calls.extend(of_camera.map(|effect| (effect, scene.sources.sensor.clone())));
         let materials = scene.materials.iter().zip(&scene.sources.materials);
         let not_matte = materials.filter(|(material, _)| !material.is_matte());
+        let emitters = scene.emitters.iter().zip(&scene.sources.emitters);
+        let textured = emitters.filter(|(emitter, _)| emitter.is_textured_area());
         Self {
             calls,
-            not_matte: not_matte.filter_map(|(_, source)| source.clone()).collect(),
+            not_matte: not_matte
+                .filter_map(|(_, source)| source.clone())
+                .chain(textured.map(|(_, source)| source.clone()))
+                .collect(),
         }
     }
 
@@ -152,21 +157,24 @@ impl Effects {
         calls.map(|(_, source)| source)
     }
 
-    /// The bsdfs for which the engine needs its general variant; none where the one for [matte](Scene::is_matte) scenes will do.
+    /// The bsdfs and lights for which the engine needs its general variant; none where the one for [matte](Scene::is_matte) scenes will do.
     pub fn not_matte(&self) -> &[Source] {
         &self.not_matte
     }
 }
 
 impl Scene {
-    /// Whether all surfaces reflect diffusely, the same at every point: then the engine runs the variant that holds nothing else.
+    /// Whether all surfaces reflect diffusely and glow, each the same at every point: then the engine runs the variant that holds
+    /// nothing else.
     pub fn is_matte(&self) -> bool {
         self.materials.iter().all(Material::is_matte)
+            && !self.emitters.iter().any(Emitter::is_textured_area)
     }
 }
 
 fn of_emitter(emitter: &Emitter) -> &'static [Effect] {
     match emitter {
+        Emitter::Area(light) if light.radiance.varies() => &[Effect::Textures],
         Emitter::Area(_) => &[],
         Emitter::Spot(light) if light.is_textured() => &[Effect::PointLights, Effect::Projections],
         Emitter::Point(_) | Emitter::Spot(_) | Emitter::Directional(_) => &[Effect::PointLights],

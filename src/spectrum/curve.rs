@@ -42,7 +42,7 @@ enum Shape {
 }
 
 /// The greatest emission: far above all that is real, and far from the overflow of `f32`.
-const MAX_EMISSION: f32 = 1e30;
+pub const MAX_EMISSION: f32 = 1e30;
 
 /// The greatest index of refraction or absorption: far above all that is real.
 const MAX_INDEX: f32 = 1e6;
@@ -144,6 +144,38 @@ impl SpectralCurve {
         Ok(Self {
             rgb,
             shape: Shape::FilteredD65 { filter, scale },
+        })
+    }
+
+    /// An emission with the spectrum of a reflectance: white is equal energy. As [`Self::rgb_reflectance`] up to 1; a
+    /// greater colour is that of its greatest component, times it.
+    ///
+    /// # Errors
+    /// A component that is negative, greater than 1e30 or not a number.
+    pub fn rgb_unbounded(rgb: [f32; 3]) -> Result<Self, CurveError> {
+        for (channel, value) in rgb.into_iter().enumerate() {
+            check_emission(value, Place::Channel(channel))?;
+        }
+        let scale = rgb.into_iter().fold(1.0, f32::max);
+        let shape = match rgb {
+            [r, g, b] if r == g && g == b => Shape::Constant(r),
+            _ => Shape::ScaledSigmoid {
+                colour: SigmoidPolynomial::fit(rgb.map(|channel| channel / scale)),
+                scale,
+            },
+        };
+        Ok(Self { rgb, shape })
+    }
+
+    /// A measured emission whose linear sRGB colour is that of a reflectance, the one under D65, without the upper limit.
+    ///
+    /// # Errors
+    /// As [`Self::tabulated_emission`].
+    pub fn tabulated_unbounded(entries: &[(f32, f32)]) -> Result<Self, CurveError> {
+        let table = PiecewiseLinear::new(entries, check_emission)?;
+        Ok(Self {
+            rgb: srgb_under_d65(|nm| table.at(nm)).map(|channel| channel.max(0.0) as f32),
+            shape: Shape::Tabulated(table),
         })
     }
 

@@ -112,8 +112,8 @@ impl<C: Colour> LightChunk<C> {
             let chosen = self.emitter[lane] as usize;
             let emitter = &emitters[chosen];
             match emitter {
-                Emitter::Area(light) if engine.lamp(chosen).is_some() => {
-                    let radiance = engine.emission.radiance(paths, path, chosen, light);
+                Emitter::Area(_) if engine.lamp(chosen).is_some() => {
+                    let radiance = engine.emission.radiance(paths, path, chosen);
                     self.weight[lane] = radiance * self.lamps.weight[lane];
                 }
                 _ => {

@@ -75,6 +75,23 @@ fn a_matte_scene_has_no_effects() {
 }
 
 #[test]
+fn lamps_with_textures_are_not_matte() {
+    let lamp = |content: &str| {
+        let texture =
+            format!(r#"<texture type="checkerboard" name="radiance">{content}</texture>"#);
+        let emitter = format!(r#"<emitter type="area">{texture}</emitter>"#);
+        let shape = format!(r#"<shape type="rectangle">{emitter}</shape>"#);
+        load(&format!("{shape}{}{PERSPECTIVE}", sphere("diffuse", ""))).unwrap()
+    };
+    let scene = lamp("");
+    assert_eq!(of(&scene), ["textures"]);
+    assert!(!scene.is_matte());
+    let plain = lamp(&(float("color0", 0.3) + &float("color1", 0.3)));
+    assert!(of(&plain).is_empty());
+    assert!(plain.is_matte());
+}
+
+#[test]
 fn surfaces() {
     assert_eq!(of_bsdf("conductor", ""), ["mirrors"]);
     assert_eq!(of_bsdf("roughconductor", ""), ["gloss"]);

@@ -6,6 +6,7 @@
 mod cube;
 mod cylinder;
 mod disk;
+mod drawn;
 mod lanes;
 mod mesh_file;
 mod mesh_sampling;

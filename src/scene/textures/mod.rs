@@ -145,7 +145,7 @@ impl Pattern {
 }
 
 /// Luminance of linear sRGB (ITU-R BT.709).
-pub(super) fn luminance(rgb: [f32; 3]) -> f32 {
+pub(in crate::scene) fn luminance(rgb: [f32; 3]) -> f32 {
     0.212_671 * rgb[0] + 0.715_160 * rgb[1] + 0.072_169 * rgb[2]
 }
 
