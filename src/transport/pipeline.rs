@@ -9,9 +9,9 @@ use super::statistics::TraceStatistics;
 use super::variant::Variant;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, walk_stage};
 use crate::embree::Coherence;
-use crate::film::{Accumulator, FilmTile, PixelStatistics, TilePixels};
+use crate::film::{Accumulator, FilmTile, PixelStatistics, SecondMoments, TilePixels};
 use crate::sampling::{Sampler, SamplerKind};
-use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::spectrum::{Colour, SpectrumArithmetic, xyz_from_srgb};
 use crate::walk::{Offspring, Scope};
 
 /// After so many bounces a batch is cut off and the cut is reported: only light that never dies gets here.
@@ -168,6 +168,20 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             TilePixels::Double(pixels) => self.expose_pixels(engine, job, pixels),
             TilePixels::Compensated(pixels) => self.expose_pixels(engine, job, pixels),
         }
+        if let Some(moments) = &mut tile.second_moments {
+            self.expose_moments(job, moments);
+        }
+    }
+
+    /// Adds the squares of the finished camera paths to their pixels.
+    fn expose_moments(&self, job: &TileJob, moments: &mut SecondMoments) {
+        for path in 0..self.paths.radiance.len() {
+            if let Ok(radiance) = finished(self.paths.radiance[path]) {
+                let rgb = C::to_rgb(radiance, &self.paths.wavelengths[path]).map(f64::from);
+                let weight = f64::from(self.paths.filter_weight[path]);
+                moments.add(path / job.samples as usize, xyz_from_srgb(rgb), weight);
+            }
+        }
     }
 
     fn expose_pixels<A: Accumulator>(
@@ -200,20 +214,38 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
 
     /// The colour of a finished camera path; black, and counted, where it is no radiance.
     fn sample(&mut self, path: usize) -> [f64; 3] {
-        let radiance = self.paths.radiance[path];
         let dropped = &mut self.statistics.dropped;
-        let components = radiance.components();
-        if components.iter().any(|value| value.is_nan()) {
-            dropped.nan += 1;
-        } else if !radiance.is_finite() {
-            dropped.infinite += 1;
-        } else if components.iter().any(|&value| value < 0.0) {
-            dropped.negative += 1;
-        } else {
-            let weight = f64::from(self.paths.filter_weight[path]);
-            return C::to_rgb(radiance, &self.paths.wavelengths[path])
-                .map(|v| f64::from(v) * weight);
+        match finished(self.paths.radiance[path]) {
+            Ok(radiance) => {
+                let weight = f64::from(self.paths.filter_weight[path]);
+                return C::to_rgb(radiance, &self.paths.wavelengths[path])
+                    .map(|v| f64::from(v) * weight);
+            }
+            Err(NoRadiance::Nan) => dropped.nan += 1,
+            Err(NoRadiance::Infinite) => dropped.infinite += 1,
+            Err(NoRadiance::Negative) => dropped.negative += 1,
         }
         [0.0; 3]
+    }
+}
+
+/// Why a path's sum is no radiance.
+enum NoRadiance {
+    Nan,
+    Infinite,
+    Negative,
+}
+
+/// The radiance of a finished camera path, if it is one.
+fn finished<S: SpectrumArithmetic>(radiance: S) -> Result<S, NoRadiance> {
+    let components = radiance.components();
+    if components.iter().any(|value| value.is_nan()) {
+        Err(NoRadiance::Nan)
+    } else if !radiance.is_finite() {
+        Err(NoRadiance::Infinite)
+    } else if components.iter().any(|&value| value < 0.0) {
+        Err(NoRadiance::Negative)
+    } else {
+        Ok(radiance)
     }
 }
