@@ -41,6 +41,16 @@ enum Shape {
     },
 }
 
+impl Shape {
+    /// That of a table: a constant where it is flat in visible light.
+    fn of_table(table: PiecewiseLinear) -> Self {
+        match table.flat_between(WAVELENGTH_MIN, WAVELENGTH_MAX) {
+            Some(value) => Self::Constant(value),
+            None => Self::Tabulated(table),
+        }
+    }
+}
+
 /// The greatest emission: far above all that is real, and far from the overflow of `f32`.
 pub const MAX_EMISSION: f32 = 1e30;
 
@@ -93,7 +103,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_reflectance)?;
         Ok(Self {
             rgb: srgb_of_reflectance(|nm| table.at(nm)),
-            shape: Shape::Tabulated(table),
+            shape: Shape::of_table(table),
         })
     }
 
@@ -108,7 +118,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_emission)?;
         Ok(Self {
             rgb: srgb_of_emission(|nm| table.at(nm)),
-            shape: Shape::Tabulated(table),
+            shape: Shape::of_table(table),
         })
     }
 
@@ -175,7 +185,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_emission)?;
         Ok(Self {
             rgb: srgb_under_d65(|nm| table.at(nm)).map(|channel| channel.max(0.0) as f32),
-            shape: Shape::Tabulated(table),
+            shape: Shape::of_table(table),
         })
     }
 
@@ -201,7 +211,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_index)?;
         Ok(Self {
             rgb: srgb_under_d65(|nm| table.at(nm)).map(|channel| channel.max(0.0) as f32),
-            shape: Shape::Tabulated(table),
+            shape: Shape::of_table(table),
         })
     }
 
@@ -214,7 +224,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_index)?;
         Ok(Self {
             rgb: srgb_of_emission(|nm| table.at(nm)),
-            shape: Shape::Tabulated(table),
+            shape: Shape::of_table(table),
         })
     }
 
@@ -246,10 +256,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_index)?;
         Ok(Self {
             rgb: [table.at(SODIUM_D); 3],
-            shape: match table.flat_between(WAVELENGTH_MIN, WAVELENGTH_MAX) {
-                Some(index) => Shape::Constant(index),
-                None => Shape::Tabulated(table),
-            },
+            shape: Shape::of_table(table),
         })
     }
 
