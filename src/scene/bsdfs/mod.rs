@@ -17,6 +17,7 @@ mod conductor;
 mod conductor_materials;
 mod dielectric;
 mod diffuse;
+mod discrete;
 mod effects;
 mod fresnel;
 mod index;
@@ -45,6 +46,7 @@ pub use conductor::{Conductor, ConductorMaterial};
 pub use conductor_materials::ConductorIndex;
 pub use dielectric::{Dielectric, DielectricMaterial};
 pub use diffuse::{Diffuse, DiffuseMaterial};
+use discrete::Discrete;
 pub use index::Indices;
 pub(super) use material::load;
 pub use material::{Material, SeenPoint};
@@ -52,7 +54,9 @@ pub use microfacet::Distribution;
 pub use null::Null;
 pub use perturbed::Perturbed;
 pub use plastic::{CoatedBase, Plastic, PlasticMaterial};
-pub use principled::{Principled, PrincipledMaterial, PrincipledThin, PrincipledThinMaterial};
+pub use principled::{
+    CommonParameters, Principled, PrincipledMaterial, PrincipledThin, PrincipledThinMaterial,
+};
 pub use refraction::Refraction;
 pub use rough_conductor::{RoughConductor, RoughConductorMaterial};
 pub use rough_dielectric::{RoughDielectric, RoughDielectricMaterial};
