@@ -1,8 +1,8 @@
 //! What can happen in a scene: which effects its objects call for, and which variant of the engine that takes.
 //!
 //! What cannot be seen is no effect. That is settled where plugins load: a lens of radius 0 is a pinhole, a mask of opacity 1 is
-//! what it masks, an interface without a change of index is nothing, a surface of roughness 0 is the smooth one, and an image of
-//! one colour is that colour. So whatever is left in a [`Scene`] counts.
+//! what it masks, an interface without a change of index is nothing, a surface of roughness 0 is the smooth one, an image of
+//! one colour is that colour, and a flat spectrum is a number. So whatever is left in a [`Scene`] counts.
 
 use std::fmt;
 
@@ -177,8 +177,12 @@ fn of_emitter(emitter: &Emitter) -> &'static [Effect] {
         Emitter::Area(light) if light.radiance.varies() => &[Effect::Textures],
         Emitter::Area(_) => &[],
         Emitter::Spot(light) if light.is_textured() => &[Effect::PointLights, Effect::Projections],
-        Emitter::Point(_) | Emitter::Spot(_) | Emitter::Directional(_) => &[Effect::PointLights],
-        Emitter::Projector(_) => &[Effect::PointLights, Effect::Projections],
+        Emitter::Projector(light) if light.is_textured() => {
+            &[Effect::PointLights, Effect::Projections]
+        }
+        Emitter::Point(_) | Emitter::Spot(_) | Emitter::Projector(_) | Emitter::Directional(_) => {
+            &[Effect::PointLights]
+        }
         Emitter::Constant(_) => &[Effect::Surroundings],
         Emitter::Environment(_) => &[Effect::Surroundings, Effect::EnvironmentMap],
     }

@@ -9,6 +9,7 @@ mod integrators;
 mod light_choice;
 mod load;
 pub mod mesh;
+mod plain;
 mod sensors;
 mod shapes;
 mod source;

@@ -27,6 +27,7 @@ mod microfacet;
 mod normal_map;
 mod null;
 mod perturbed;
+mod plain;
 mod plastic;
 mod principled;
 mod refraction;

@@ -85,6 +85,13 @@ impl AreaLight {
         (luminances.sum::<f64>() / f64::from(POINTS).powi(2)) as f32
     }
 
+    /// Makes a radiance that varies over the shape, whose form is `geometry`, the grey of its mean luminance.
+    pub(in crate::scene) fn make_uniform(&mut self, geometry: &Geometry) {
+        if self.radiance.varies() {
+            self.radiance = SpectrumTexture::grey(self.mean_luminance(geometry));
+        }
+    }
+
     /// The radiance that leaves `point` of the shape in `direction` (unit, world space, away from the surface).
     /// `parameters` finds where the point lies on the shape; only textures want to know.
     #[inline]
