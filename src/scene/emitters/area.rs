@@ -143,3 +143,6 @@ impl AreaLight {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;
