@@ -137,3 +137,63 @@ fn errors_are_those_of_loading() {
     );
     assert!(said.contains("--size"), "{said}");
 }
+
+/// What is said with `--measure`, for a short time.
+#[test]
+fn costs_are_measured() {
+    let lens = r#"<sensor type="thinlens"><float name="aperture_radius" value="0.1"/><float name="focus_distance" value="4"/>"#;
+    let glass = with(
+        SCENE,
+        r#"<bsdf type="diffuse"/>"#,
+        r#"<bsdf type="dielectric"/>"#,
+    );
+    let scene = with(&glass, r#"<sensor type="perspective">"#, lens);
+    let folder = Folder::new();
+    folder.write("scene.xml", scene);
+    let measured = |arguments: &[&str]| {
+        let all = ["explain", "scene.xml"].iter().chain(arguments).copied();
+        let output = folder.cohort(all).output().unwrap();
+        assert!(output.status.success(), "{output:?}");
+        assert!(output.stderr.is_empty(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let said = measured(&["--measure=100ms"]);
+    // "1.23 (1.20 to 1.26)"
+    let number = |word: Option<&str>| -> f64 {
+        let word = word.unwrap_or_else(|| panic!("{said}"));
+        word.trim_matches(['(', ')'])
+            .parse()
+            .unwrap_or_else(|_| panic!("{word} in {said}"))
+    };
+    let costs = |effect: &str| {
+        let row = row(&said, effect);
+        let mut words = row
+            .strip_prefix(effect)
+            .unwrap()
+            .split(' ')
+            .skip_while(|word| word.is_empty() || *word == "on");
+        let (median, lower) = (number(words.next()), number(words.next()));
+        assert_eq!(words.next(), Some("to"), "{row}");
+        let upper = number(words.next());
+        assert!(0.0 < lower && lower <= median && median <= upper, "{row}");
+    };
+    for effect in ["glass", "surroundings", "depth of field", "all of them"] {
+        costs(effect);
+    }
+    assert_eq!(row(&said, "effect"), "effect cost called for by");
+    assert_eq!(row(&said, "gloss"), "gloss off");
+    let (_, counterparts) = said.split_once("cost: time per camera path").unwrap();
+    let told: Vec<&str> = counterparts.lines().skip(1).map(str::trim).collect();
+    assert_eq!(told.len(), 3, "{said}");
+    assert!(
+        told[2].starts_with("depth of field") && told[2].ends_with("a pinhole"),
+        "{said}"
+    );
+    let said = refused(
+        &folder
+            .cohort(["explain", "scene.xml", "--measure=0s"])
+            .output()
+            .unwrap(),
+    );
+    assert!(said.contains("longer than 0"), "{said}");
+}

@@ -391,6 +391,35 @@ fn films_can_be_half_precision_and_luminance() {
 }
 
 #[test]
+fn moments_have_mitsubas_channels() {
+    let moment = |name: &str| {
+        let nested =
+            format!(r#"<integrator type="moment"><integrator type="path"{name}/></integrator>"#);
+        with(SCENE, r#"<integrator type="path"/>"#, &nested)
+    };
+    // `[field.name for field in film.bitmap(raw=False).struct_()]` of Mitsuba 3.9.1
+    for (name, called) in [("", "_arg_0"), (r#" name="inner""#, "inner")] {
+        let folder = Folder::new();
+        let output = folder.render(&moment(name), []);
+        assert!(output.status.success(), "{output:?}");
+        let meta = MetaData::read_from_file(folder.path().join("out.exr"), false).unwrap();
+        let channels = meta.headers[0].channels.list.iter();
+        let mut names: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
+        names.sort();
+        let mut expected = ["R", "G", "B"].map(str::to_owned).to_vec();
+        for axis in ["X", "Y", "Z"] {
+            expected.extend([format!("{called}.{axis}"), format!("m2_{called}.{axis}")]);
+        }
+        expected.sort();
+        assert_eq!(names, expected);
+        let plain = Folder::new();
+        assert!(plain.render(SCENE, []).status.success());
+        let image = |folder: &Folder| cohort::read_exr(&folder.path().join("out.exr")).unwrap();
+        assert_eq!(image(&folder), image(&plain));
+    }
+}
+
+#[test]
 fn help_and_version() {
     let folder = Folder::new();
     let say = |arguments: &[&str]| {

@@ -9,6 +9,8 @@ use std::sync::Arc;
 use cohort::render::{ColourMode, Settings};
 use cohort::sampling::SamplerKind;
 use cohort::scene::{LoadOptions, Scene};
+use cohort::transport::DirectLight;
+use glam::DVec3;
 
 use support::render::replicates;
 
@@ -137,14 +139,19 @@ fn an_instance_is_a_furnace_wherever_it_stands() {
 }
 
 /// A plane, seen from above in a few points about its middle. `light` lights it.
-fn lit_plane(light: &str) -> f64 {
-    let scene = scene(&format!(
+fn plane(light: &str) -> Arc<Scene> {
+    scene(&format!(
         r#"<integrator type="path"><integer name="max_depth" value="2"/></integrator>
         <sensor type="perspective"><float name="fov" value="0.05"/>
             <transform name="to_world"><lookat origin="0.5 0 8" target="0 0 0" up="0 1 0"/></transform>{BOX_FILM}</sensor>
         <shape type="rectangle"><transform name="to_world"><scale value="5"/></transform>
             <bsdf type="diffuse"><rgb name="reflectance" value="0.7"/></bsdf></shape>{light}"#
-    ));
+    ))
+}
+
+/// The mean radiance of that plane.
+fn lit_plane(light: &str) -> f64 {
+    let scene = plane(light);
     let ours = replicates(&scene, settings(SamplerKind::Independent), 0..64, 4);
     let [mean, ..] = ours.means();
     mean.mean
@@ -202,6 +209,51 @@ fn a_spot_lights_a_plane_by_its_intensity() {
     assert_near(lit_plane(&light(9.9)), full);
     assert_near(lit_plane(&light(15.0)), 0.5 * full);
     assert_eq!(lit_plane(&light(20.1)), 0.0);
+}
+
+/// The irradiance at the origin, of a surface that faces +z, by a polygon of radiance 1 above it: Lambert's formula.
+fn irradiance_of_polygon(corners: &[DVec3]) -> f64 {
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    let parts = edges.map(|(a, b)| {
+        let normal = a.cross(*b).normalize();
+        a.angle_between(*b) * normal.z
+    });
+    0.5 * parts.sum::<f64>().abs()
+}
+
+/// Squares that glow light a plane as much as each of them does by its place, however they are found.
+#[test]
+fn a_glowing_checkerboard_lights_a_plane_by_its_squares() {
+    let lamp = r#"<shape type="rectangle"><transform name="to_world"><rotate x="1" angle="180"/><translate x="2" y="0.5" z="1.5"/></transform>
+        <emitter type="area"><texture type="checkerboard" name="radiance"><float name="color0" value="5"/><float name="color1" value="1"/>
+            </texture></emitter></shape>"#;
+    // u grows with x, and v with -y.
+    let square = |u: f64, v: f64| {
+        let corner = |u: f64, v: f64| DVec3::new(1.0 + 2.0 * u, 1.5 - 2.0 * v, 1.5);
+        irradiance_of_polygon(&[
+            corner(u, v),
+            corner(u + 0.5, v),
+            corner(u + 0.5, v + 0.5),
+            corner(u, v + 0.5),
+        ])
+    };
+    let expected = 0.7 / PI
+        * (5.0 * (square(0.0, 0.0) + square(0.5, 0.5)) + square(0.5, 0.0) + square(0.0, 0.5));
+    for (direct_light, spp) in [(DirectLight::NextEvent, 64), (DirectLight::Off, 512)] {
+        let settings = Settings {
+            direct_light,
+            ..settings(SamplerKind::Independent)
+        };
+        let [mean, ..] = replicates(&plane(lamp), settings, 0..64, spp).means();
+        let error = mean.standard_error();
+        assert!(error < 4e-3 * expected, "{error}");
+        let deviation = (mean.mean - expected).abs();
+        assert!(
+            deviation < 4.0 * error,
+            "{} instead of {expected}",
+            mean.mean
+        );
+    }
 }
 
 /// The edge of a glowing half plane at the depth z, by a lens of radius r that is in focus at f: at the distance d from the

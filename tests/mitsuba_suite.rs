@@ -11,6 +11,7 @@ use std::sync::Arc;
 use cohort::film::{Image, read_exr};
 use cohort::render::{ColourMode, Settings, WavelengthCount};
 use cohort::scene::{LoadOptions, Scene};
+use cohort::walk::{StrategyKind, StrategyOptions};
 
 use support::comparison::Comparison;
 use support::estimate::{Estimate, sidak_threshold};
@@ -76,6 +77,57 @@ fn files_below(folder: &Path, ends_with: &str) -> Vec<PathBuf> {
     found
 }
 
+/// The settings of a render by a strategy with its defaults.
+fn settings(colour: ColourMode, strategy: StrategyKind) -> Settings {
+    Settings {
+        colour,
+        strategy: strategy
+            .build(&StrategyOptions::default())
+            .expect("defaults are valid"),
+        ..Settings::default()
+    }
+}
+
+/// A scene that Mitsuba renders too.
+struct Case<'a> {
+    what: String,
+    path: &'a Path,
+    /// What the scene reads.
+    inputs: &'a [PathBuf],
+    definitions: &'a [(String, String)],
+    colour: ColourMode,
+    /// Images of Mitsuba's, of 32 samples per pixel each.
+    references: u32,
+}
+
+impl Case<'_> {
+    /// Compares our images by each of `strategies` with Mitsuba's.
+    fn check(&self, strategies: &[StrategyKind]) {
+        let Some(mitsuba) = Mitsuba::find(&self.what) else {
+            return;
+        };
+        let Some(scene) = load(self.path, self.definitions) else {
+            return;
+        };
+        let reference = Reference {
+            scene: self.path,
+            inputs: self.inputs,
+            definitions: self.definitions,
+            colour: self.colour,
+            max_depth: None,
+            seeds: self.references,
+            spp: 32,
+        };
+        let reference = mitsuba.render(&reference, scene.film.crop.size);
+        for &strategy in strategies {
+            let ours = replicates(&scene, settings(self.colour, strategy), 0..24, 20);
+            let what = format!("{} by {strategy}", self.what);
+            Comparison::new(what, &ours, &reference, 4).assert();
+        }
+    }
+}
+
+/// By every strategy: here paths are as long as it takes for strategies to differ.
 #[test]
 fn cornell_boxes() {
     let Some(suite) = suite("the Cornell boxes of Mitsuba's suite") else {
@@ -88,30 +140,15 @@ fn cornell_boxes() {
         ("cbox-rgb.xml", ColourMode::Rgb),
         ("cbox-spectral.xml", ColourMode::default()),
     ] {
-        let path = folder.join(file);
-        let Some(mitsuba) = Mitsuba::find(file) else {
-            return;
-        };
-        let definitions = [("res".to_owned(), "64".to_owned())];
-        let Some(scene) = load(&path, &definitions) else {
-            continue;
-        };
-        let reference = Reference {
-            scene: &path,
+        let case = Case {
+            what: file.to_owned(),
+            path: &folder.join(file),
             inputs: &inputs,
-            definitions: &definitions,
+            definitions: &[("res".to_owned(), "64".to_owned())],
             colour,
-            max_depth: None,
-            seeds: 48,
-            spp: 32,
+            references: 48,
         };
-        let reference = mitsuba.render(&reference, scene.film.crop.size);
-        let settings = Settings {
-            colour,
-            ..Settings::default()
-        };
-        let ours = replicates(&scene, settings, 0..24, 20);
-        Comparison::new(file, &ours, &reference, 4).assert();
+        case.check(&StrategyKind::ALL);
     }
 }
 
@@ -121,37 +158,18 @@ fn material_preview() {
     let Some(suite) = suite("the material preview of Mitsuba's suite") else {
         return;
     };
-    let path = files::of_project("tests/scenes/preview.xml");
     let folder = suite.join("scenes/matpreview");
-    let inputs = [
-        folder.join("envmap.exr"),
-        folder.join("matpreview.serialized"),
-    ];
-    let definitions = [("suite".to_owned(), suite.display().to_string())];
+    let inputs = ["envmap.exr", "matpreview.serialized"].map(|file| folder.join(file));
     for (colour, name) in COLOURS {
-        let Some(mitsuba) = Mitsuba::find("the material preview") else {
-            return;
-        };
-        let Some(scene) = load(&path, &definitions) else {
-            return;
-        };
-        let reference = Reference {
-            scene: &path,
+        let case = Case {
+            what: format!("material preview, {name}"),
+            path: &files::of_project("tests/scenes/preview.xml"),
             inputs: &inputs,
-            definitions: &definitions,
+            definitions: &[("suite".to_owned(), suite.display().to_string())],
             colour,
-            max_depth: None,
-            seeds: 24,
-            spp: 32,
+            references: 24,
         };
-        let reference = mitsuba.render(&reference, scene.film.crop.size);
-        let settings = Settings {
-            colour,
-            ..Settings::default()
-        };
-        let ours = replicates(&scene, settings, 0..24, 20);
-        let what = format!("material preview, {name}");
-        Comparison::new(what, &ours, &reference, 4).assert();
+        case.check(&[StrategyKind::Roulette]);
     }
 }
 
@@ -167,25 +185,33 @@ fn scenes_with_their_own_references() {
         let Some(scene) = load(path, &[]) else {
             continue;
         };
-        for (colour, name) in COLOURS {
-            let settings = Settings {
-                colour,
-                ..Settings::default()
-            };
-            let spp = scene.sampler.sample_count;
-            let ours = replicates_with_rare_highlights(&scene, settings, 0..8, spp.div_ceil(8));
-            let reference = |suffix: &str| {
-                let file = reference_file(path, &format!("{name}{suffix}"));
-                read_exr(&file).unwrap_or_else(|error| panic!("{error}"))
-            };
-            check_by_the_suites_rule(
-                path,
-                &ours.blocks(1),
-                &reference(""),
-                &reference("_var"),
-                spp,
-            );
-        }
+        check_by_the_suites_rule(path, &scene, &[StrategyKind::Roulette]);
+    }
+}
+
+/// A few of them, with different surfaces and lights, by every other strategy: mirrors under a photographed sky, rough glass and rough plastics
+/// by a lamp, a textured spot.
+#[test]
+fn scenes_with_their_own_references_by_every_strategy() {
+    const SCENES: [&str; 4] = [
+        "infinite_mirrors/scene_path.xml",
+        "bsdf_spheres/test_roughdielectric_path.xml",
+        "bsdf_spheres/test_roughplastic_linear_path.xml",
+        "spot_light/test_spot_direct.xml",
+    ];
+    let Some(suite) = suite("scenes of Mitsuba's suite by every strategy") else {
+        return;
+    };
+    let others: Vec<StrategyKind> = StrategyKind::ALL
+        .into_iter()
+        .filter(|&kind| kind != StrategyKind::Roulette)
+        .collect();
+    for file in SCENES {
+        let path = suite.join("tests/scenes").join(file);
+        let Some(scene) = load(&path, &[]) else {
+            panic!("{file} was skipped");
+        };
+        check_by_the_suites_rule(&path, &scene, &others);
     }
 }
 
@@ -213,14 +239,38 @@ fn reference_file(scene: &Path, what: &str) -> PathBuf {
 /// The variance that the suite gives pixels of its references whose second moment, rounded, left them less.
 const LEAST_VARIANCE: f64 = 1e-4;
 
-/// z-tests of all pixels and channels; 99.75 % must pass at the corrected threshold.
-fn check_by_the_suites_rule(
-    scene: &Path,
+/// Renders `scene`, which `path` holds, by each of `strategies` in all colours, and compares that with the images that come with it:
+/// z-tests of all pixels and channels, of which 99.75 % must pass at the corrected threshold.
+fn check_by_the_suites_rule(path: &Path, scene: &Arc<Scene>, strategies: &[StrategyKind]) {
+    let spp = scene.sampler.sample_count;
+    for (colour, name) in COLOURS {
+        let reference = |suffix: &str| {
+            let file = reference_file(path, &format!("{name}{suffix}"));
+            read_exr(&file).unwrap_or_else(|error| panic!("{error}"))
+        };
+        let (reference, variance) = (reference(""), reference("_var"));
+        for &strategy in strategies {
+            let settings = settings(colour, strategy);
+            let ours = replicates_with_rare_highlights(scene, settings, 0..8, spp.div_ceil(8));
+            let share = share_that_passes(&ours.blocks(1), &reference, &variance, spp);
+            let what = format!("{}, {name}, {strategy}", path.display());
+            println!("{what}: {:.3} % pass", 100.0 * share);
+            assert!(
+                share >= 0.9975,
+                "{what}: only {:.3} % of the pixels pass",
+                100.0 * share
+            );
+        }
+    }
+}
+
+/// The share of pixels and channels of `ours` that may be `reference`, rendered with `spp` samples per pixel, of which `variance` is that of one.
+fn share_that_passes(
     ours: &[Vec<Estimate>; 3],
     reference: &Image,
     variance: &Image,
     spp: u32,
-) {
+) -> f64 {
     let threshold = sidak_threshold(0.01, 3 * ours[0].len());
     let mut passing = 0;
     for (channel, pixels) in ours.iter().enumerate() {
@@ -234,12 +284,5 @@ fn check_by_the_suites_rule(
             passing += usize::from(pixel.z_of_difference(&expected).abs() <= threshold);
         }
     }
-    let share = passing as f64 / (3 * ours[0].len()) as f64;
-    println!("{}: {:.3} % pass", scene.display(), 100.0 * share);
-    assert!(
-        share >= 0.9975,
-        "{}: only {:.3} % of the pixels pass",
-        scene.display(),
-        100.0 * share
-    );
+    passing as f64 / (3 * ours[0].len()) as f64
 }

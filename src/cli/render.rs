@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use cohort::embree::BuildQuality;
-use cohort::film::{ExrOptions, FilmSums, write_exr, write_png};
+use cohort::film::{ExrMoments, ExrOptions, Film, FilmSums, write_exr, write_png};
 use cohort::render::{Budget, ColourMode, Ended, Render, Settings, WavelengthCount, metadata};
 use cohort::sampling::SamplerKind;
 use cohort::scene::{PathIntegrator, Scene};
@@ -18,7 +18,7 @@ use cohort::transport::DirectLight;
 use super::interrupt::stop_on_interrupt;
 use super::output::OutputFiles;
 use super::parse::{parse_count, parse_rays, parse_seed, parse_threads, parse_time};
-use super::report::{Bar, summarise, tell_what_is_missing, warn_of_darkness};
+use super::report::{Bar, summarise, warn_of_darkness};
 use super::scene_args::SceneArgs;
 use super::strategy_args::StrategyArgs;
 
@@ -132,7 +132,6 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
     arguments.strategy.build(default_depth)?;
     let scene = arguments.scene.load(arguments.threads())?;
     warn_of_darkness(&scene);
-    tell_what_is_missing(&scene);
     let settings = arguments.settings(&scene)?;
     let render = Render::new(Arc::new(scene), settings)?;
     let stop =
@@ -147,6 +146,7 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
         format: film.pixel_format,
         half_precision: film.half_precision,
         samples: outcome.film.unequal_samples(),
+        moments: moments(&render, &outcome.film),
         attributes: metadata(&render, &outcome),
         ..ExrOptions::default()
     };
@@ -157,6 +157,13 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
         Ended::Complete | Ended::OutOfTime | Ended::OutOfRays => ExitCode::SUCCESS,
         Ended::Interrupted => ExitCode::from(130),
     })
+}
+
+/// The moments of the samples, where the scene asks for them.
+fn moments(render: &Render, film: &Film) -> Option<ExrMoments> {
+    let name = render.engine().scene().integrator.moments.clone()?;
+    let second = film.second_moments()?;
+    Some(ExrMoments { name, second })
 }
 
 impl RenderArgs {

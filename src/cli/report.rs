@@ -23,15 +23,6 @@ pub fn warn_of_darkness(scene: &Scene) {
     }
 }
 
-/// Says what a scene asks for and does not get.
-pub fn tell_what_is_missing(scene: &Scene) {
-    if scene.integrator.second_moments {
-        tell(
-            "the second moments that `moment` asks for are not written; the image is that of the integrator in it",
-        );
-    }
-}
-
 /// The progress bar.
 pub struct Bar(ProgressBar);
 

@@ -7,6 +7,7 @@ use exr::prelude::*;
 
 use super::{FilmFileError, Image, WholeFile};
 use crate::scene::{ImageSize, PixelFormat};
+use crate::spectrum::xyz_from_srgb;
 
 /// How an EXR is written.
 #[derive(Clone, Debug)]
@@ -21,8 +22,20 @@ pub struct ExrOptions {
     /// The variance of every pixel's mean, for channels `variance.R`, `variance.G` and `variance.B` of 32-bit numbers.
     /// Ignored where its size is not that of the image.
     pub variance: Option<Image>,
+    /// The moments of the samples, for channels of 32-bit numbers of their own.
+    pub moments: Option<ExrMoments>,
     /// Attributes: name and value.
     pub attributes: Vec<(String, String)>,
+}
+
+/// The moments of samples: Mitsuba's channels `NAME.X`, `NAME.Y`, `NAME.Z` with the mean of every pixel in CIE XYZ, and the
+/// same with `m2_` before them for the means of the squares.
+#[derive(Clone, Debug)]
+pub struct ExrMoments {
+    /// What the channels are called.
+    pub name: String,
+    /// The means of X^2, Y^2 and Z^2. Without effect where its size is not that of the image.
+    pub second: Image,
 }
 
 impl Default for ExrOptions {
@@ -32,6 +45,7 @@ impl Default for ExrOptions {
             half_precision: false,
             samples: None,
             variance: None,
+            moments: None,
             attributes: Vec::new(),
         }
     }
@@ -83,6 +97,11 @@ pub fn write_exr(
             channels.push(AnyChannel::new(name, FlatSamples::F32(values.collect())));
         }
     }
+    if let Some(moments) = &options.moments
+        && moments.second.size() == size
+    {
+        channels.extend(moment_channels(image, moments));
+    }
     let mut attributes = LayerAttributes {
         software_name: Some(Text::from(concat!("cohort ", env!("CARGO_PKG_VERSION")))),
         ..LayerAttributes::default()
@@ -117,6 +136,29 @@ pub fn write_exr(
                 message: error.to_string(),
             })
     })
+}
+
+/// The channels of the first moments, which are those of `image`, and of the second.
+fn moment_channels<'i>(
+    image: &'i Image,
+    moments: &'i ExrMoments,
+) -> impl Iterator<Item = AnyChannel<FlatSamples>> + 'i {
+    const AXES: [&str; 3] = ["X", "Y", "Z"];
+    let channel = |name: String, values: Vec<f32>| {
+        // Never in half precision, which ends at 65504: squares of bright pixels.
+        AnyChannel::new(&*name, FlatSamples::F32(values))
+    };
+    let name = &moments.name;
+    let first = AXES.into_iter().enumerate().map(move |(axis, letter)| {
+        let xyz = |rgb: &[f32; 3]| xyz_from_srgb(rgb.map(f64::from))[axis] as f32;
+        let values = image.pixels().iter().map(xyz).collect();
+        channel(format!("{name}.{letter}"), values)
+    });
+    let second = AXES.into_iter().enumerate().map(move |(axis, letter)| {
+        let values = moments.second.pixels().iter().map(|pixel| pixel[axis]);
+        channel(format!("m2_{name}.{letter}"), values.collect())
+    });
+    first.chain(second)
 }
 
 /// Reads the R, G and B channels of an EXR.
@@ -253,6 +295,51 @@ mod tests {
         write_exr(&path, &image, &options).unwrap();
         assert_eq!(read_exr(&path).unwrap(), image);
         assert_eq!(read_exr_variance(&path).unwrap(), Some(variance));
+    }
+
+    #[test]
+    fn moments_stand_beside_the_image() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let mut image = Image::black(ImageSize {
+            width: 2,
+            height: 1,
+        });
+        *image.pixel_mut(1, 0) = [1.0; 3];
+        let mut second = image.clone();
+        *second.pixel_mut(0, 0) = [7.0, 8.0, 1e6];
+        let options = ExrOptions {
+            half_precision: true,
+            moments: Some(ExrMoments {
+                name: "inner".into(),
+                second,
+            }),
+            ..ExrOptions::default()
+        };
+        write_exr(&path, &image, &options).unwrap();
+        let file = read_first_flat_layer_from_file(&path).unwrap();
+        let channels = &file.layer_data.channel_data.list;
+        let values = |name: &str| -> Vec<f32> {
+            let channel = channels.iter().find(|channel| channel.name == *name);
+            channel.unwrap().sample_data.values_as_f32().collect()
+        };
+        assert_eq!(values("m2_inner.Z"), [1e6, 1.0]);
+        assert_eq!(values("m2_inner.X"), [7.0, 1.0]);
+        // The white of sRGB.
+        let white = [
+            ("inner.X", 0.950_456),
+            ("inner.Y", 1.0),
+            ("inner.Z", 1.088_754),
+        ];
+        for (name, expected) in white {
+            let [black, white] = values(name)[..] else {
+                panic!()
+            };
+            assert_eq!(black, 0.0);
+            assert!((white - expected).abs() < 1e-5, "{name}: {white}");
+        }
+        assert_eq!(channels.len(), 9);
+        assert_eq!(read_exr(&path).unwrap(), image);
     }
 
     #[test]

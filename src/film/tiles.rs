@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FilmSums, Image, PixelStatistics, TilePixels};
+use super::{FilmSums, Image, PixelStatistics, SecondMoments, TilePixels};
 use crate::scene::ImageSize;
 
 /// Side of a tile in pixels.
@@ -19,6 +19,8 @@ pub struct FilmTile {
     pub size: ImageSize,
     /// Its pixels, row by row.
     pub pixels: TilePixels,
+    /// The second moments of their samples, if the film was asked for them.
+    pub second_moments: Option<SecondMoments>,
 }
 
 impl FilmTile {
@@ -30,6 +32,7 @@ impl FilmTile {
             y,
             size,
             pixels: TilePixels::new(sums, size.pixels()),
+            second_moments: None,
         }
     }
 
@@ -68,13 +71,25 @@ impl Film {
         Self { size, tiles }
     }
 
-    /// Whether this is like `Film::new(size, sums)` but for its samples. What was loaded from a file may be anything.
-    pub fn is_like_new(&self, size: ImageSize, sums: FilmSums) -> bool {
+    /// The same film, which also adds up the second moments of its samples.
+    pub fn with_second_moments(mut self) -> Self {
+        for tile in &mut self.tiles {
+            tile.second_moments = Some(SecondMoments::new(tile.pixels.count()));
+        }
+        self
+    }
+
+    /// Whether this is like `Film::new(size, sums)` but for its samples, and, if `second_moments`, like that
+    /// [with them](Self::with_second_moments). What was loaded from a file may be anything.
+    pub fn is_like_new(&self, size: ImageSize, sums: FilmSums, second_moments: bool) -> bool {
         let is_at = |tile: &FilmTile, [x, y]: [u32; 2]| {
+            let count = tile.size.pixels();
             [tile.x, tile.y] == [x, y]
                 && tile.size == FilmTile::size_at([x, y], size)
                 && tile.pixels.sums() == sums
-                && tile.pixels.count() == tile.size.pixels()
+                && tile.pixels.count() == count
+                && tile.second_moments.as_ref().map(SecondMoments::count)
+                    == second_moments.then_some(count)
         };
         self.size == size
             && self.tiles.len() == corners(size).count()
@@ -114,6 +129,20 @@ impl Film {
                     .map(|v| v as f32)
             })
         })
+    }
+
+    /// The mean over the samples of every pixel of X^2, Y^2 and Z^2 (CIE), if the film adds them up.
+    pub fn second_moments(&self) -> Option<Image> {
+        let mut image = Image::black(self.size);
+        for tile in &self.tiles {
+            let moments = tile.second_moments.as_ref()?;
+            for (index, pixel) in tile.pixels.iter().enumerate() {
+                let (x, y) = tile.position(index);
+                let mean = moments.mean(index, pixel.samples);
+                *image.pixel_mut(x, y) = mean.map(|value| value as f32);
+            }
+        }
+        Some(image)
     }
 
     /// The pixels in no particular order.
@@ -196,14 +225,35 @@ mod tests {
     #[test]
     fn a_film_with_other_tiles_is_told() {
         let film = Film::new(SIZE, FilmSums::Single);
-        assert!(film.is_like_new(SIZE, FilmSums::Single));
-        assert!(!film.is_like_new(SIZE, FilmSums::Double));
-        let (mut less, mut moved, mut cut) = (film.clone(), film.clone(), film);
+        assert!(film.is_like_new(SIZE, FilmSums::Single, false));
+        assert!(!film.is_like_new(SIZE, FilmSums::Double, false));
+        assert!(!film.is_like_new(SIZE, FilmSums::Single, true));
+        let (mut less, mut moved, mut cut) = (film.clone(), film.clone(), film.clone());
         less.tiles.pop();
         moved.tiles.swap(0, 1);
         cut.tiles[2].pixels = TilePixels::new(FilmSums::Single, 5);
         for broken in [less, moved, cut] {
-            assert!(!broken.is_like_new(SIZE, FilmSums::Single));
+            assert!(!broken.is_like_new(SIZE, FilmSums::Single, false));
         }
+        let mut film = film.with_second_moments();
+        assert!(film.is_like_new(SIZE, FilmSums::Single, true));
+        assert!(!film.is_like_new(SIZE, FilmSums::Single, false));
+        film.tiles[1].second_moments = Some(SecondMoments::new(5));
+        assert!(!film.is_like_new(SIZE, FilmSums::Single, true));
+    }
+
+    #[test]
+    fn second_moments_are_means_of_squares() {
+        let mut film = Film::new(SIZE, FilmSums::Double);
+        assert_eq!(film.second_moments(), None);
+        film = film.with_second_moments();
+        let tile = &mut film.tiles_mut()[1];
+        doubles(tile)[2].add_unit(4, [0.0; 3]);
+        let moments = tile.second_moments.as_mut().unwrap();
+        moments.add(2, [1.0, 2.0, -3.0], 1.0);
+        moments.add(2, [0.0, 2.0, 1.0], -0.5);
+        let image = film.second_moments().unwrap();
+        assert_eq!(image.pixel(18, 0), [0.25, 0.5, 2.125]);
+        assert_eq!(image.pixel(17, 0), [0.0; 3]);
     }
 }

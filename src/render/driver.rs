@@ -10,6 +10,7 @@ use thiserror::Error;
 use super::watch::{Watch, unpoisoned};
 use super::{Budget, Ended, Observer, Outcome, RenderState, Schedule, Settings, StopFlag, memory};
 use crate::embree::EmbreeError;
+use crate::film::Film;
 use crate::sampling::StreamKey;
 use crate::scene::{Emitter, Scene};
 use crate::transport::{
@@ -85,7 +86,7 @@ impl Render {
         if settings.threads.get() > MAX_THREADS {
             return Err(RenderError::TooManyThreads(settings.threads));
         }
-        memory::check(scene.film.crop.size)?;
+        memory::check(scene.film.crop.size, scene.integrator.moments.is_some())?;
         let has_delta_light = scene.emitters.iter().any(Emitter::is_delta);
         if has_delta_light && settings.direct_light == DirectLight::Off {
             return Err(RenderError::UnreachableLight);
@@ -139,6 +140,11 @@ impl Render {
         &self.settings
     }
 
+    /// Whether the scene asks for the second moments of its samples.
+    fn asks_for_moments(&self) -> bool {
+        self.engine.scene().integrator.moments.is_some()
+    }
+
     /// How long the acceleration structure took to build.
     pub fn build_time(&self) -> Duration {
         self.build_time
@@ -156,18 +162,22 @@ impl Render {
 
     /// A render that has not traced anything, with this seed of all random streams instead of that of the settings.
     pub fn start(&self, seed: u64) -> RenderState {
-        RenderState::new(
-            self.engine.scene().film.crop.size,
-            self.settings.film_sums,
-            seed,
-        )
+        let size = self.engine.scene().film.crop.size;
+        let film = Film::new(size, self.settings.film_sums);
+        let film = if self.asks_for_moments() {
+            film.with_second_moments()
+        } else {
+            film
+        };
+        RenderState::new(film, seed)
     }
 
     /// Whether [`advance`](Self::advance) can go on from `state`, which may come from a file: whether its image has the
     /// size and the sums of this render's. That scene and settings are the same is for the caller to know.
     pub fn fits(&self, state: &RenderState) -> bool {
         let size = self.engine.scene().film.crop.size;
-        state.film.is_like_new(size, self.settings.film_sums)
+        let (sums, moments) = (self.settings.film_sums, self.asks_for_moments());
+        state.film.is_like_new(size, sums, moments)
             && state.pass.done.len() == state.film.tiles().len()
     }
 

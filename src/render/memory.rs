@@ -7,11 +7,15 @@ use crate::scene::ImageSize;
 /// Bytes that a pixel takes: its sums, the image made of them, and that image's channels as they are encoded.
 const BYTES_PER_PIXEL: usize = size_of::<PixelStatistics>() + 3 * size_of::<[f32; 3]>();
 
+/// The same for the second moments: their sums, the image made of them, and the channels of both moments as they are encoded.
+const BYTES_FOR_MOMENTS: usize = size_of::<[f64; 3]>() + 3 * size_of::<[f32; 3]>();
+
 /// An error where the film alone would need more memory than the system can give, so that this is said at once instead
 /// of the process being killed later.
-pub(super) fn check(size: ImageSize) -> Result<(), RenderError> {
+pub(super) fn check(size: ImageSize, second_moments: bool) -> Result<(), RenderError> {
     let gibibytes = |bytes: f64| bytes / f64::from(1 << 30);
-    let needed = size.pixels() as f64 * BYTES_PER_PIXEL as f64;
+    let bytes = BYTES_PER_PIXEL + if second_moments { BYTES_FOR_MOMENTS } else { 0 };
+    let needed = size.pixels() as f64 * bytes as f64;
     match available_bytes() {
         Some(available) if needed > available => Err(RenderError::OutOfMemory {
             width: size.width,
@@ -43,8 +47,8 @@ mod tests {
             width: side,
             height: side,
         };
-        assert!(check(size(800)).is_ok());
-        let message = check(size(u32::MAX)).unwrap_err().to_string();
+        assert!(check(size(800), true).is_ok());
+        let message = check(size(u32::MAX), false).unwrap_err().to_string();
         assert!(message.contains("make it smaller"), "{message}");
     }
 }

@@ -5,8 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::{Budget, Schedule};
-use crate::film::{Film, FilmSums};
-use crate::scene::ImageSize;
+use crate::film::Film;
 use crate::transport::TraceStatistics;
 
 /// A render under way: what [`Render::advance`](super::Render::advance) goes on from.
@@ -76,9 +75,8 @@ pub struct Outcome {
 }
 
 impl RenderState {
-    /// A render of an image of `size` that has not traced anything.
-    pub(super) fn new(size: ImageSize, sums: FilmSums, seed: u64) -> Self {
-        let film = Film::new(size, sums);
+    /// A render onto `film` that has not traced anything.
+    pub(super) fn new(film: Film, seed: u64) -> Self {
         Self {
             seed,
             pass: Pass {

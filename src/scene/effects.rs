@@ -1,8 +1,8 @@
 //! What can happen in a scene: which effects its objects call for, and which variant of the engine that takes.
 //!
 //! What cannot be seen is no effect. That is settled where plugins load: a lens of radius 0 is a pinhole, a mask of opacity 1 is
-//! what it masks, an interface without a change of index is nothing, a surface of roughness 0 is the smooth one, and an image of
-//! one colour is that colour. So whatever is left in a [`Scene`] counts.
+//! what it masks, an interface without a change of index is nothing, a surface of roughness 0 is the smooth one, an image of
+//! one colour is that colour, and a flat spectrum is a number. So whatever is left in a [`Scene`] counts.
 
 use std::fmt;
 
@@ -138,12 +138,14 @@ impl Effects {
         calls.extend(of_camera.map(|effect| (effect, scene.sources.sensor.clone())));
         let materials = scene.materials.iter().zip(&scene.sources.materials);
         let not_matte = materials.filter(|(material, _)| !material.is_matte());
+        let emitters = scene.emitters.iter().zip(&scene.sources.emitters);
+        let textured = emitters.filter(|(emitter, _)| emitter.is_textured_area());
         Self {
             calls,
             not_matte: not_matte
-                .filter_map(|(_, source)| source.as_ref())
-                .chain(&scene.sources.groups)
-                .cloned()
+                .filter_map(|(_, source)| source.clone())
+                .chain(textured.map(|(_, source)| source.clone()))
+                .chain(scene.sources.groups.iter().cloned())
                 .collect(),
         }
     }
@@ -162,25 +164,34 @@ impl Effects {
         calls.map(|(_, source)| source)
     }
 
-    /// The objects, bsdfs and groups, for which the engine needs its general variant; none where the one for [matte](Scene::is_matte) scenes will do.
+    /// The bsdfs, lights and groups for which the engine needs its general variant; none where the one for [matte](Scene::is_matte)
+    /// scenes will do.
     pub fn not_matte(&self) -> &[Source] {
         &self.not_matte
     }
 }
 
 impl Scene {
-    /// Whether all surfaces reflect diffusely, the same at every point, and none stands in an instance: then the engine runs the variant that holds nothing else.
+    /// Whether all surfaces reflect diffusely and glow, each the same at every point, and none stands in an instance: then the
+    /// engine runs the variant that holds nothing else.
     pub fn is_matte(&self) -> bool {
-        self.instances.is_empty() && self.materials.iter().all(Material::is_matte)
+        self.instances.is_empty()
+            && self.materials.iter().all(Material::is_matte)
+            && !self.emitters.iter().any(Emitter::is_textured_area)
     }
 }
 
 fn of_emitter(emitter: &Emitter) -> &'static [Effect] {
     match emitter {
+        Emitter::Area(light) if light.radiance.varies() => &[Effect::Textures],
         Emitter::Area(_) => &[],
         Emitter::Spot(light) if light.is_textured() => &[Effect::PointLights, Effect::Projections],
-        Emitter::Point(_) | Emitter::Spot(_) | Emitter::Directional(_) => &[Effect::PointLights],
-        Emitter::Projector(_) => &[Effect::PointLights, Effect::Projections],
+        Emitter::Projector(light) if light.is_textured() => {
+            &[Effect::PointLights, Effect::Projections]
+        }
+        Emitter::Point(_) | Emitter::Spot(_) | Emitter::Projector(_) | Emitter::Directional(_) => {
+            &[Effect::PointLights]
+        }
         Emitter::Constant(_) => &[Effect::Surroundings],
         Emitter::Environment(_) => &[Effect::Surroundings, Effect::EnvironmentMap],
     }

@@ -9,6 +9,7 @@ mod integrators;
 mod light_choice;
 mod load;
 pub mod mesh;
+mod plain;
 mod sensors;
 mod shapes;
 mod source;
@@ -17,12 +18,12 @@ mod textures;
 pub mod xml;
 
 pub use bsdfs::{
-    Bsdf, BsdfSample, BsdfValue, CoatedBase, Conductor, ConductorIndex, ConductorMaterial,
-    Dielectric, DielectricMaterial, Diffuse, DiffuseMaterial, Distribution, Indices, Material,
-    Model, Null, Perturbed, Plastic, PlasticMaterial, Principled, PrincipledMaterial,
-    PrincipledThin, PrincipledThinMaterial, Refraction, RoughConductor, RoughConductorMaterial,
-    RoughDielectric, RoughDielectricMaterial, RoughPlastic, RoughPlasticMaterial, Roughness,
-    SeenPoint, Side, ThinDielectric,
+    Bsdf, BsdfSample, BsdfValue, CoatedBase, CommonParameters, Conductor, ConductorIndex,
+    ConductorMaterial, Dielectric, DielectricMaterial, Diffuse, DiffuseMaterial, Distribution,
+    Indices, Material, Model, Null, Perturbed, Plastic, PlasticMaterial, Principled,
+    PrincipledMaterial, PrincipledThin, PrincipledThinMaterial, Refraction, RoughConductor,
+    RoughConductorMaterial, RoughDielectric, RoughDielectricMaterial, RoughPlastic,
+    RoughPlasticMaterial, Roughness, SeenPoint, Side, ThinDielectric,
 };
 pub(crate) use bsdfs::{BsdfSamples, BsdfValues};
 pub use effects::{Effect, Effects};

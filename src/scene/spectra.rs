@@ -7,12 +7,14 @@ use super::xml::{Object, SpectrumProperty};
 use crate::spectrum::{CurveError, SpectralCurve};
 
 /// What a colour is the colour of: it decides how numbers become spectra.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Quantity {
     /// A share of light, in [0, 1].
     Reflectance,
     /// Radiance, intensity and the like.
     Emission,
+    /// What a texture of a lamp emits: it has the spectra of reflectances, as in Mitsuba, but no upper bound.
+    TextureEmission,
     /// An index of refraction or absorption of a conductor.
     Index,
 }
@@ -55,6 +57,7 @@ pub(super) fn stated(property: SpectrumProperty, quantity: Quantity) -> Stated {
             match quantity {
                 Quantity::Reflectance => SpectralCurve::rgb_reflectance(rgb),
                 Quantity::Emission => SpectralCurve::rgb_emission(rgb),
+                Quantity::TextureEmission => SpectralCurve::rgb_unbounded(rgb),
                 Quantity::Index => SpectralCurve::rgb_index(rgb),
             }
         }
@@ -66,6 +69,7 @@ pub(super) fn stated(property: SpectrumProperty, quantity: Quantity) -> Stated {
             match quantity {
                 Quantity::Reflectance => SpectralCurve::tabulated_reflectance(&list),
                 Quantity::Emission => SpectralCurve::tabulated_emission(&list),
+                Quantity::TextureEmission => SpectralCurve::tabulated_unbounded(&list),
                 Quantity::Index => SpectralCurve::tabulated_index(&list),
             }
         }
@@ -76,6 +80,7 @@ fn constant(value: f32, quantity: Quantity) -> Result<SpectralCurve, CurveError>
     match quantity {
         Quantity::Reflectance => SpectralCurve::constant_reflectance(value),
         Quantity::Emission => SpectralCurve::constant_emission(value),
+        Quantity::TextureEmission => SpectralCurve::rgb_unbounded([value; 3]),
         Quantity::Index => SpectralCurve::constant_index(value),
     }
 }
@@ -85,7 +90,9 @@ fn constant(value: f32, quantity: Quantity) -> Result<SpectralCurve, CurveError>
 pub(super) fn number(value: f32, quantity: Quantity) -> Result<SpectralCurve, CurveError> {
     match quantity {
         Quantity::Emission => SpectralCurve::rgb_emission([value; 3]),
-        Quantity::Reflectance | Quantity::Index => constant(value, quantity),
+        Quantity::Reflectance | Quantity::TextureEmission | Quantity::Index => {
+            constant(value, quantity)
+        }
     }
 }
 

@@ -27,6 +27,13 @@ const SRGB_FROM_XYZ: [[f64; 3]; 3] = [
     [0.055_648, -0.204_043, 1.057_311],
 ];
 
+/// CIE XYZ from linear sRGB, row by row: the inverse.
+const XYZ_FROM_SRGB: [[f64; 3]; 3] = [
+    [0.412_453, 0.357_580, 0.180_423],
+    [0.212_671, 0.715_160, 0.072_169],
+    [0.019_334, 0.119_193, 0.950_227],
+];
+
 /// Linear sRGB of the normalised XYZ values (1, 1, 1): the equal-energy illuminant E.
 pub(super) const ILLUMINANT_E: [f64; 3] = srgb_from_xyz([1.0, 1.0, 1.0]);
 
@@ -81,6 +88,12 @@ const fn srgb_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
         m[1][0] * xyz[0] + m[1][1] * xyz[1] + m[1][2] * xyz[2],
         m[2][0] * xyz[0] + m[2][1] * xyz[1] + m[2][2] * xyz[2],
     ]
+}
+
+/// CIE XYZ of linear sRGB.
+#[inline]
+pub fn xyz_from_srgb(rgb: [f64; 3]) -> [f64; 3] {
+    XYZ_FROM_SRGB.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
 }
 
 /// The weight of the wavelength `nm` in linear sRGB, per nm: the integral over the wavelength of a spectral

@@ -41,8 +41,18 @@ enum Shape {
     },
 }
 
+impl Shape {
+    /// That of a table: a constant where it is flat in visible light.
+    fn of_table(table: PiecewiseLinear) -> Self {
+        match table.flat_between(WAVELENGTH_MIN, WAVELENGTH_MAX) {
+            Some(value) => Self::Constant(value),
+            None => Self::Tabulated(table),
+        }
+    }
+}
+
 /// The greatest emission: far above all that is real, and far from the overflow of `f32`.
-const MAX_EMISSION: f32 = 1e30;
+pub const MAX_EMISSION: f32 = 1e30;
 
 /// The greatest index of refraction or absorption: far above all that is real.
 const MAX_INDEX: f32 = 1e6;
@@ -93,7 +103,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_reflectance)?;
         Ok(Self {
             rgb: srgb_of_reflectance(|nm| table.at(nm)),
-            shape: Shape::Tabulated(table),
+            shape: Shape::of_table(table),
         })
     }
 
@@ -108,7 +118,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_emission)?;
         Ok(Self {
             rgb: srgb_of_emission(|nm| table.at(nm)),
-            shape: Shape::Tabulated(table),
+            shape: Shape::of_table(table),
         })
     }
 
@@ -147,6 +157,38 @@ impl SpectralCurve {
         })
     }
 
+    /// An emission with the spectrum of a reflectance: white is equal energy. As [`Self::rgb_reflectance`] up to 1; a
+    /// greater colour is that of its greatest component, times it.
+    ///
+    /// # Errors
+    /// A component that is negative, greater than 1e30 or not a number.
+    pub fn rgb_unbounded(rgb: [f32; 3]) -> Result<Self, CurveError> {
+        for (channel, value) in rgb.into_iter().enumerate() {
+            check_emission(value, Place::Channel(channel))?;
+        }
+        let scale = rgb.into_iter().fold(1.0, f32::max);
+        let shape = match rgb {
+            [r, g, b] if r == g && g == b => Shape::Constant(r),
+            _ => Shape::ScaledSigmoid {
+                colour: SigmoidPolynomial::fit(rgb.map(|channel| channel / scale)),
+                scale,
+            },
+        };
+        Ok(Self { rgb, shape })
+    }
+
+    /// A measured emission whose linear sRGB colour is that of a reflectance, the one under D65, without the upper limit.
+    ///
+    /// # Errors
+    /// As [`Self::tabulated_emission`].
+    pub fn tabulated_unbounded(entries: &[(f32, f32)]) -> Result<Self, CurveError> {
+        let table = PiecewiseLinear::new(entries, check_emission)?;
+        Ok(Self {
+            rgb: srgb_under_d65(|nm| table.at(nm)).map(|channel| channel.max(0.0) as f32),
+            shape: Shape::of_table(table),
+        })
+    }
+
     /// The same index, of refraction or of absorption, at all wavelengths and in all channels.
     ///
     /// # Errors
@@ -169,7 +211,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_index)?;
         Ok(Self {
             rgb: srgb_under_d65(|nm| table.at(nm)).map(|channel| channel.max(0.0) as f32),
-            shape: Shape::Tabulated(table),
+            shape: Shape::of_table(table),
         })
     }
 
@@ -182,7 +224,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_index)?;
         Ok(Self {
             rgb: srgb_of_emission(|nm| table.at(nm)),
-            shape: Shape::Tabulated(table),
+            shape: Shape::of_table(table),
         })
     }
 
@@ -214,10 +256,7 @@ impl SpectralCurve {
         let table = PiecewiseLinear::new(entries, check_index)?;
         Ok(Self {
             rgb: [table.at(SODIUM_D); 3],
-            shape: match table.flat_between(WAVELENGTH_MIN, WAVELENGTH_MAX) {
-                Some(index) => Shape::Constant(index),
-                None => Shape::Tabulated(table),
-            },
+            shape: Shape::of_table(table),
         })
     }
 

@@ -20,9 +20,9 @@ mod upsampling;
 mod values;
 mod wavelengths;
 
-pub use cie::{WAVELENGTH_MAX, WAVELENGTH_MIN};
+pub use cie::{WAVELENGTH_MAX, WAVELENGTH_MIN, xyz_from_srgb};
 pub use colour::{Colour, Rgb, Spectral};
-pub use curve::SpectralCurve;
+pub use curve::{MAX_EMISSION, SpectralCurve};
 pub use emission_image::{BetweenTexels, EmissionImage};
 pub use error::{CurveError, Place};
 pub use reflectances::Reflectances;

@@ -9,11 +9,13 @@
 //! - [`Contender`]: a render that goes on and stops when it is told to; ours and Mitsuba's
 //! - `timeline`, `race`: turns of one repetition; `kept`: what makes a study resumable
 //! - [`reference`](mod@reference), [`measures`], [`statistics`], [`pairs`](mod@pairs): errors and how sure they are
+//! - [`Cost`]: what an effect of a scene costs, apart from all that
 //! - [`results`]: everything that was found; [`report`]: how it is shown
 
 pub mod accuracy;
 mod assemble;
 mod contender;
+mod effect_cost;
 mod entry;
 mod error;
 pub mod false_colour;
@@ -42,6 +44,7 @@ mod verdict;
 
 pub use accuracy::Axis;
 pub use contender::{Contender, OurRender, Repetition, Standing};
+pub use effect_cost::{Cost, TURNS};
 pub use entry::{EntrySettings, SpecError, StrategySpec};
 pub use error::StudyError;
 pub use mitsuba_contender::MitsubaContender;

@@ -128,7 +128,8 @@ fn add_emission<C: Colour>(
                     let point = surfaces.points.get(lane);
                     let direction = Vec3::from(segments.rays.direction(i));
                     let wavelengths = &paths.wavelengths[path];
-                    let radiance = light.radiance::<C>(&point, -direction, wavelengths);
+                    let parameters = || shape.geometry.parameters(&segments.hit(i), &point);
+                    let radiance = light.radiance::<C>(&point, parameters, -direction, wavelengths);
                     if !radiance.is_black() {
                         let origin = Vec3::from(segments.rays.origin(i));
                         let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);

@@ -112,6 +112,11 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
     }
 
     #[inline]
+    fn has_smooth_lobe(&self) -> bool {
+        self.bsdf.has_smooth_lobe()
+    }
+
+    #[inline]
     fn evaluate(
         vertices: &[Self],
         _normals: &VectorLanes<CHUNK>,

@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::batch::{CameraPaths, Receiver, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
-use super::variant::Variant;
+use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::scene::{Emitter, LightSample, Parallelogram};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -109,11 +109,15 @@ impl<C: Colour> LightChunk<C> {
         self.draw_lamps(positions, u, v);
         for (lane, i) in chunk.enumerate() {
             let path = vertices.path[i] as usize;
+            if !vertices.bsdf[i].has_smooth_lobe() {
+                self.put(lane, positions.get(lane), None);
+                continue;
+            }
             let chosen = self.emitter[lane] as usize;
             let emitter = &emitters[chosen];
             match emitter {
-                Emitter::Area(light) if engine.lamp(chosen).is_some() => {
-                    let radiance = engine.emission.radiance(paths, path, chosen, light);
+                Emitter::Area(_) if engine.lamp(chosen).is_some() => {
+                    let radiance = engine.emission.radiance(paths, path, chosen);
                     self.weight[lane] = radiance * self.lamps.weight[lane];
                 }
                 _ => {
@@ -142,6 +146,10 @@ impl<C: Colour> LightChunk<C> {
             return;
         }
         for (lane, i) in chunk.enumerate() {
+            if !vertices.bsdf[i].has_smooth_lobe() {
+                self.probability[lane] = 0.0;
+                continue;
+            }
             let Receiver { position, normal } = vertices.receiver(i);
             match engine.light_choice.choose(position, normal, numbers[lane]) {
                 Some(chosen) => {

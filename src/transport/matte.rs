@@ -54,6 +54,11 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     }
 
     #[inline(always)]
+    fn has_smooth_lobe(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
     fn evaluate(
         vertices: &[Self],
         normals: &VectorLanes<CHUNK>,

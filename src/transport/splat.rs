@@ -5,9 +5,9 @@ use multiversion::multiversion;
 use super::batch::CameraPaths;
 use super::engine::{Engine, TileJob};
 use super::statistics::DroppedSamples;
-use crate::film::{Accumulator, FilmTile, PixelStatistics, TilePixels};
+use crate::film::{Accumulator, FilmTile, PixelStatistics, SecondMoments, TilePixels};
 use crate::sampling::SamplerKind;
-use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::spectrum::{Colour, SpectrumArithmetic, xyz_from_srgb};
 use crate::walk::Scope;
 
 /// Adds every path to its pixel of the tile; those that carry no radiance count as black there, and in `dropped`.
@@ -26,6 +26,20 @@ pub(super) fn expose<C: Colour>(
         TilePixels::Double(pixels) => expose_pixels(paths, joint, pixels, job.samples, dropped),
         TilePixels::Compensated(pixels) => {
             expose_pixels(paths, joint, pixels, job.samples, dropped);
+        }
+    }
+    if let Some(moments) = &mut tile.second_moments {
+        expose_moments(paths, job.samples, moments);
+    }
+}
+
+/// Adds the squares of `samples` paths to each pixel.
+fn expose_moments<C: Colour>(paths: &CameraPaths<C>, samples: u32, moments: &mut SecondMoments) {
+    for path in 0..paths.radiance.len() {
+        if let Some(rgb) = rgb(paths, path) {
+            let weight = f64::from(paths.filter_weight[path]);
+            let xyz = xyz_from_srgb(rgb.map(f64::from));
+            moments.add(path / samples as usize, xyz, weight);
         }
     }
 }
@@ -65,21 +79,34 @@ fn expose_pixels<C: Colour, A: Accumulator>(
     }
 }
 
-/// The colour of a finished path; black, and counted, where it is no radiance.
+/// The weighted colour of a finished path; black, and counted, where it is no radiance.
 #[inline(always)]
 fn sample<C: Colour>(
     paths: &CameraPaths<C>,
     path: usize,
     dropped: &mut DroppedSamples,
 ) -> [f64; 3] {
-    let radiance = paths.radiance[path];
-    let components = radiance.components();
-    let is_radiance = |sound, &value: &f32| sound & (0.0..=f32::MAX).contains(&value);
-    if !components.iter().fold(true, is_radiance) {
-        dropped.count(components);
-        return [0.0; 3];
+    match rgb(paths, path) {
+        Some(rgb) => {
+            let weight = f64::from(paths.filter_weight[path]);
+            rgb.map(|value| f64::from(value) * weight)
+        }
+        None => {
+            dropped.count(paths.radiance[path].components());
+            [0.0; 3]
+        }
     }
-    let weight = f64::from(paths.filter_weight[path]);
+}
+
+/// The linear sRGB colour of a finished path, if it is a radiance.
+#[inline(always)]
+fn rgb<C: Colour>(paths: &CameraPaths<C>, path: usize) -> Option<[f32; 3]> {
+    let radiance = paths.radiance[path];
+    let is_radiance = |sound, &value: &f32| sound & (0.0..=f32::MAX).contains(&value);
     let draw = paths.wavelength_draw[path];
-    C::to_rgb(radiance, &paths.wavelengths[path], draw).map(|value| f64::from(value) * weight)
+    radiance
+        .components()
+        .iter()
+        .fold(true, is_radiance)
+        .then(|| C::to_rgb(radiance, &paths.wavelengths[path], draw))
 }

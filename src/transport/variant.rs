@@ -161,6 +161,9 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
     /// See [`Bsdf::shininess`](crate::scene::Bsdf::shininess).
     fn shininess(&self) -> f32;
 
+    /// Whether next-event estimation can find light here: not where all lobes are discrete.
+    fn has_smooth_lobe(&self) -> bool;
+
     /// Evaluates at most [`CHUNK`] vertices, each with the shading normal of the side that was hit and an incident direction.
     fn evaluate(
         vertices: &[Self],

@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use super::conductor_materials::ConductorIndex;
-use super::{BsdfSample, BsdfValue, fresnel};
+use super::{BsdfSample, Discrete, fresnel};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::textures::{SpectrumTexture, TextureLoader};
@@ -58,6 +58,8 @@ pub struct Conductor<S> {
     pub reflectance: S,
 }
 
+impl<S> Discrete for Conductor<S> {}
+
 impl<S: SpectrumArithmetic> Conductor<S> {
     /// The share of light that is reflected at the cosine `cos`.
     #[inline]
@@ -71,21 +73,6 @@ impl<S: SpectrumArithmetic> Conductor<S> {
     #[inline]
     pub(super) fn albedo(&self, outgoing: Vec3) -> S {
         self.fresnel(outgoing.z)
-    }
-
-    #[inline]
-    pub(super) fn shininess(&self, _outgoing: Vec3) -> f32 {
-        f32::INFINITY
-    }
-
-    #[inline]
-    pub(super) fn has_smooth_lobe(&self) -> bool {
-        false
-    }
-
-    #[inline]
-    pub(super) fn evaluate(&self, _outgoing: Vec3, _incident: Vec3) -> BsdfValue<S> {
-        BsdfValue::nothing()
     }
 
     #[inline]

@@ -11,7 +11,7 @@
 use glam::Vec3;
 
 use super::index::Indices;
-use super::{BsdfSample, BsdfValue, Side, fresnel};
+use super::{BsdfSample, Discrete, Side, fresnel};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::textures::{SpectrumTexture, TextureLoader};
@@ -91,6 +91,8 @@ pub struct Dielectric<S> {
     pub transmittance: S,
 }
 
+impl<S> Discrete for Dielectric<S> {}
+
 impl<S: SpectrumArithmetic> Dielectric<S> {
     /// The share of light that is reflected at the absolute cosine `cos`.
     #[inline]
@@ -116,21 +118,6 @@ impl<S: SpectrumArithmetic> Dielectric<S> {
     pub(super) fn albedo_at(&self, cos: f32) -> S {
         let reflected = self.fresnel(cos);
         self.reflectance * reflected + self.transmittance * (S::ONE - reflected)
-    }
-
-    #[inline]
-    pub(super) fn shininess(&self, _outgoing: Vec3) -> f32 {
-        f32::INFINITY
-    }
-
-    #[inline]
-    pub(super) fn has_smooth_lobe(&self) -> bool {
-        false
-    }
-
-    #[inline]
-    pub(super) fn evaluate(&self, _outgoing: Vec3, _incident: Vec3) -> BsdfValue<S> {
-        BsdfValue::nothing()
     }
 
     /// The hero wavelength's Fresnel reflectance decides between reflection and refraction.

@@ -2,7 +2,6 @@
 
 use super::surface::Surface;
 use crate::scene::effects::Effect;
-use crate::scene::textures::FloatTexture;
 
 impl Surface {
     /// What this surface and those that it contains call for, each once.
@@ -59,17 +58,20 @@ impl Surface {
             }
             Self::Principled(material) => {
                 call(Effect::Gloss, true);
-                call(Effect::Anisotropy, can_be_positive(&material.anisotropic));
-                call(Effect::Coatings, can_be_positive(&material.clearcoat));
+                call(
+                    Effect::Anisotropy,
+                    material.common.anisotropic.can_be_positive(),
+                );
+                call(Effect::Coatings, material.clearcoat.can_be_positive());
                 call(Effect::Glass, material.is_transmissive());
                 call(Effect::Textures, material.varies());
             }
             Self::PrincipledThin(material) => {
-                let glass = can_be_positive(&material.spec_trans);
+                let glass = material.common.spec_trans.can_be_positive();
                 call(Effect::Gloss, glass);
                 call(
                     Effect::Anisotropy,
-                    glass && can_be_positive(&material.anisotropic),
+                    glass && material.common.anisotropic.can_be_positive(),
                 );
                 call(Effect::Glass, glass);
                 call(Effect::Textures, material.varies());
@@ -101,9 +103,4 @@ impl Surface {
             }
         }
     }
-}
-
-/// Whether a number from 0 on is more than 0 somewhere.
-fn can_be_positive(number: &FloatTexture) -> bool {
-    !matches!(number, FloatTexture::Uniform(0.0))
 }

@@ -91,6 +91,18 @@ impl Indices {
         !(self.interior.is_constant() && self.exterior.is_constant())
     }
 
+    /// The same for wavelengths that are all refracted as the one of 589.3 nm.
+    pub(super) fn undispersed(&self) -> Self {
+        let at_sodium_d = |curve: &SpectralCurve| {
+            // An index that a curve has is one that a constant can have.
+            SpectralCurve::constant_index(curve.rgb()[0]).unwrap_or_else(|_| curve.clone())
+        };
+        Self {
+            interior: at_sodium_d(&self.interior),
+            exterior: at_sodium_d(&self.exterior),
+        }
+    }
+
     /// Whether there is no interface.
     pub(super) fn are_equal(&self) -> bool {
         self.interior == self.exterior

@@ -50,13 +50,22 @@ impl Default for Material {
 }
 
 impl Material {
-    fn new(tree: Surface) -> Self {
+    pub(super) fn new(tree: Surface) -> Self {
         Self {
             needs_parameters: tree.needs_parameters(),
             is_mixed: tree.is_mixed(),
             attributes: Vec::new(),
             tree,
         }
+    }
+
+    /// The same material, which asks for the mesh attributes of these names.
+    pub(super) fn with_attributes(self, attributes: Vec<String>) -> Self {
+        Self { attributes, ..self }
+    }
+
+    pub(super) fn into_tree(self) -> Surface {
+        self.tree
     }
 
     /// What a shape that emits and has no bsdf is made of: it reflects nothing.
@@ -137,8 +146,5 @@ pub(in crate::scene) fn load(
     textures: &mut TextureLoader,
 ) -> Result<Material, SceneError> {
     let tree = Surface::load(object, textures)?;
-    Ok(Material {
-        attributes: textures.take_attributes(),
-        ..Material::new(tree)
-    })
+    Ok(Material::new(tree).with_attributes(textures.take_attributes()))
 }

@@ -2,36 +2,19 @@
 
 use glam::Vec3;
 
-use super::{BsdfSample, BsdfValue};
+use super::{BsdfSample, Discrete};
 use crate::spectrum::SpectrumArithmetic;
 
 /// A surface that light passes.
 #[derive(Clone, Copy, Debug)]
 pub struct Null;
 
+impl Discrete for Null {}
+
 impl Null {
     #[inline]
     pub(super) fn albedo<S: SpectrumArithmetic>(&self, _outgoing: Vec3) -> S {
         S::ONE
-    }
-
-    #[inline]
-    pub(super) fn shininess(&self, _outgoing: Vec3) -> f32 {
-        f32::INFINITY
-    }
-
-    #[inline]
-    pub(super) fn has_smooth_lobe(&self) -> bool {
-        false
-    }
-
-    #[inline]
-    pub(super) fn evaluate<S: SpectrumArithmetic>(
-        &self,
-        _outgoing: Vec3,
-        _incident: Vec3,
-    ) -> BsdfValue<S> {
-        BsdfValue::nothing()
     }
 
     #[inline]

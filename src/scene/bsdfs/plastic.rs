@@ -144,6 +144,18 @@ pub struct Plastic<S> {
     specular_sampling_weight: f32,
 }
 
+/// The probability with which the reflection of a coating is sampled that reflects the share `reflected` and lets `transmitted` through;
+/// `weight` is [`CoatedBase::specular_sampling_weight`].
+#[inline]
+pub(super) fn specular_probability(reflected: f32, transmitted: f32, weight: f32) -> f32 {
+    let (specular, diffuse) = (reflected * weight, transmitted * (1.0 - weight));
+    if specular + diffuse > 0.0 {
+        specular / (specular + diffuse)
+    } else {
+        0.0
+    }
+}
+
 impl<S: SpectrumArithmetic> Plastic<S> {
     #[inline]
     fn reflected(&self, cos: f32) -> f32 {
@@ -153,13 +165,7 @@ impl<S: SpectrumArithmetic> Plastic<S> {
     /// The probability with which the coating's reflection is sampled, where it reflects the share `reflected`.
     #[inline]
     fn specular_probability(&self, reflected: f32) -> f32 {
-        let specular = reflected * self.specular_sampling_weight;
-        let diffuse = (1.0 - reflected) * (1.0 - self.specular_sampling_weight);
-        if specular + diffuse > 0.0 {
-            specular / (specular + diffuse)
-        } else {
-            0.0
-        }
+        specular_probability(reflected, 1.0 - reflected, self.specular_sampling_weight)
     }
 
     /// What the base reflects, averaged over the directions into which it leaves the coating.

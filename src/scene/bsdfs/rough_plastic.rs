@@ -14,7 +14,7 @@ use std::f32::consts::FRAC_1_PI;
 use glam::{Vec2, Vec3};
 
 use super::microfacet::{Distribution, Microfacets};
-use super::plastic::{CoatedBase, PlasticMaterial};
+use super::plastic::{CoatedBase, PlasticMaterial, specular_probability};
 use super::rough_coating::RoughCoating;
 use super::surface::Surface;
 use super::{BsdfSample, BsdfValue, fresnel, mixed_shininess, roughness};
@@ -101,13 +101,11 @@ pub struct RoughPlastic<S> {
 impl<S: SpectrumArithmetic> RoughPlastic<S> {
     /// The probability with which the coating's reflection is sampled, where it lets the share `transmitted` through.
     fn specular_probability(&self, transmitted: f32) -> f32 {
-        let specular = (1.0 - transmitted) * self.specular_sampling_weight;
-        let diffuse = transmitted * (1.0 - self.specular_sampling_weight);
-        if specular + diffuse > 0.0 {
-            specular / (specular + diffuse)
-        } else {
-            0.0
-        }
+        specular_probability(
+            1.0 - transmitted,
+            transmitted,
+            self.specular_sampling_weight,
+        )
     }
 
     /// What the base reflects, about: averaged over the directions into which it leaves the coating as if that were smooth.

@@ -89,6 +89,13 @@ impl Roughness {
         is_zero(&self.alpha_u) && is_zero(&self.alpha_v)
     }
 
+    /// Gives it the mean of both directions.
+    pub(super) fn make_isotropic(&mut self) {
+        let alpha = FloatTexture::Uniform(0.5 * (self.alpha_u.mean() + self.alpha_v.mean()));
+        (self.alpha_u, self.alpha_v) = (alpha.clone(), alpha);
+        self.is_isotropic = true;
+    }
+
     /// Whether it may not be the same along u and v.
     pub(super) fn is_anisotropic(&self) -> bool {
         match (&self.alpha_u, &self.alpha_v) {

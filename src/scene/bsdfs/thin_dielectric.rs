@@ -11,7 +11,7 @@
 use glam::Vec3;
 
 use super::dielectric::Dielectric;
-use super::{BsdfSample, BsdfValue, fresnel};
+use super::{BsdfSample, Discrete, fresnel};
 use crate::spectrum::SpectrumArithmetic;
 
 /// A thin pane at the wavelengths of one path.
@@ -20,6 +20,8 @@ pub struct ThinDielectric<S> {
     /// Its faces, seen from outside.
     pub face: Dielectric<S>,
 }
+
+impl<S> Discrete for ThinDielectric<S> {}
 
 impl<S: SpectrumArithmetic> ThinDielectric<S> {
     /// The share of light that the pane reflects: r + t r t + t r^3 t + ... = 2 r / (1 + r).
@@ -32,21 +34,6 @@ impl<S: SpectrumArithmetic> ThinDielectric<S> {
     pub(super) fn albedo(&self, outgoing: Vec3) -> S {
         let reflected = self.reflected(outgoing.z);
         self.face.reflectance * reflected + self.face.transmittance * (S::ONE - reflected)
-    }
-
-    #[inline]
-    pub(super) fn shininess(&self, _outgoing: Vec3) -> f32 {
-        f32::INFINITY
-    }
-
-    #[inline]
-    pub(super) fn has_smooth_lobe(&self) -> bool {
-        false
-    }
-
-    #[inline]
-    pub(super) fn evaluate(&self, _outgoing: Vec3, _incident: Vec3) -> BsdfValue<S> {
-        BsdfValue::nothing()
     }
 
     pub(super) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {

@@ -1,7 +1,7 @@
 //! Effects are on where an object calls for them, and off where that cannot be seen.
 
 use super::{Effect, Effects};
-use crate::scene::{LoadOptions, Scene, SceneError};
+use crate::scene::{Emitter, LoadOptions, Scene, SceneError};
 
 const PERSPECTIVE: &str = r#"<sensor type="perspective"/>"#;
 
@@ -72,6 +72,23 @@ fn a_matte_scene_has_no_effects() {
             .unwrap()
             .is_matte()
     );
+}
+
+#[test]
+fn lamps_with_textures_are_not_matte() {
+    let lamp = |content: &str| {
+        let texture =
+            format!(r#"<texture type="checkerboard" name="radiance">{content}</texture>"#);
+        let emitter = format!(r#"<emitter type="area">{texture}</emitter>"#);
+        let shape = format!(r#"<shape type="rectangle">{emitter}</shape>"#);
+        load(&format!("{shape}{}{PERSPECTIVE}", sphere("diffuse", ""))).unwrap()
+    };
+    let scene = lamp("");
+    assert_eq!(of(&scene), ["textures"]);
+    assert!(!scene.is_matte());
+    let plain = lamp(&(float("color0", 0.3) + &float("color1", 0.3)));
+    assert!(of(&plain).is_empty());
+    assert!(plain.is_matte());
 }
 
 #[test]
@@ -219,6 +236,11 @@ fn lights() {
         on(&light("spot", &bitmap("texture", &varied))),
         ["point lights", "projections"]
     );
+    let projector = |path: &str| on(&light("projector", &bitmap("irradiance", path)));
+    let (_even_folder, even) = png([[50, 60, 70]; 2]);
+    assert_eq!(projector(&varied), ["point lights", "projections"]);
+    assert_eq!(projector(&even), ["point lights"]);
+    assert_eq!(on(&light("projector", "")), ["point lights"]);
     let map = |path: &str| {
         light(
             "envmap",
@@ -226,7 +248,6 @@ fn lights() {
         )
     };
     assert_eq!(on(&map(&varied)), ["surroundings", "environment map"]);
-    let (_other_folder, even) = png([[50, 60, 70]; 2]);
     assert_eq!(on(&map(&even)), ["surroundings"]);
 }
 
@@ -282,4 +303,95 @@ fn callers_are_told_with_their_place() {
         ]
     );
     assert_eq!(told(Effect::PointLights), ["emitter `point` (<scene>:7)"]);
+}
+
+/// Every effect can be left out, and what is left out is off, in whatever it stands.
+#[test]
+fn plain_counterparts_are_without_the_effect() {
+    let (_folder, image) = png([[50, 60, 70], [200, 60, 70]]);
+    let stretched = float("alpha_u", 0.1) + &float("alpha_v", 0.4);
+    let glass = r#"<spectrum name="int_ior" value="300:1.6, 900:1.5"/>"#;
+    let nested = |plugin: &str, content: &str| format!(r#"<bsdf type="{plugin}">{content}</bsdf>"#);
+    let blend = |first: &str, second: &str| {
+        let weight = bitmap("weight", &image);
+        nested("blendbsdf", &format!("{first}{second}{weight}"))
+    };
+    let textured = |plugin: &str, name: &str| nested(plugin, &bitmap(name, &image));
+    let bumpy = nested(
+        "bumpmap",
+        &format!("{}{}", bitmap("t", &image), nested("roughplastic", "")),
+    );
+    let principled: String = ["spec_trans", "anisotropic", "clearcoat"]
+        .map(|name| bitmap(name, &image))
+        .concat();
+    let surfaces = [
+        blend(
+            &nested("conductor", ""),
+            &nested(
+                "mask",
+                &(nested("roughconductor", &stretched) + &bitmap("opacity", &image)),
+            ),
+        ),
+        blend(
+            &nested("roughdielectric", &(stretched.clone() + glass)),
+            &nested("dielectric", glass),
+        ),
+        blend(&nested("thindielectric", ""), &nested("null", "")),
+        nested(
+            "twosided",
+            &blend(&bumpy, &textured("plastic", "diffuse_reflectance")),
+        ),
+        nested("principled", &principled),
+        nested("principledthin", &bitmap("spec_trans", &image)),
+        textured("roughconductor", "alpha"),
+        nested(
+            "normalmap",
+            &format!("{}{DIFFUSE}", bitmap("normalmap", &image)),
+        ),
+    ];
+    let mut objects: String = surfaces
+        .iter()
+        .map(|surface| format!(r#"<shape type="sphere">{surface}</shape>"#))
+        .collect();
+    let light =
+        |plugin: &str, content: &str| format!(r#"<emitter type="{plugin}">{content}</emitter>"#);
+    objects += &light("point", "");
+    objects += &light("projector", &bitmap("irradiance", &image));
+    objects += &light("spot", &bitmap("texture", &image));
+    objects += &light(
+        "envmap",
+        &format!(r#"<string name="filename" value="{image}"/>"#),
+    );
+    objects += &format!(
+        r#"<shape type="rectangle">{}</shape>"#,
+        light("area", &bitmap("radiance", &image))
+    );
+    let lens = r#"<sensor type="thinlens"><float name="aperture_radius" value="0.1"/></sensor>"#;
+    let parallel = r#"<sensor type="orthographic"/>"#;
+    let mut left_out = 0;
+    for camera in [lens, parallel] {
+        let scene =
+            || load(&format!("{objects}{camera}")).unwrap_or_else(|error| panic!("{error}"));
+        let all = of(&scene());
+        for effect in Effect::ALL {
+            let plain = scene().without(effect);
+            let effects = of(&plain);
+            assert!(!effects.contains(&effect.name()), "{effect}: {effects:?}");
+            assert_eq!(plain.emitters.len(), plain.sources.emitters.len());
+            for emitter in plain.shapes.iter().filter_map(|shape| shape.emitter) {
+                assert!(
+                    matches!(plain.emitters[emitter.index()], Emitter::Area(_)),
+                    "{effect}"
+                );
+            }
+            left_out += usize::from(all.contains(&effect.name()));
+        }
+        let plain = Effect::ALL.into_iter().fold(scene(), Scene::without);
+        assert!(
+            of(&plain).is_empty() && plain.is_matte(),
+            "{:?}",
+            of(&plain)
+        );
+    }
+    assert_eq!(left_out, 2 * 16, "not every effect was on");
 }

@@ -18,6 +18,16 @@ pub struct ConstantLight {
     pub radiance: SpectralCurve,
 }
 
+impl Default for ConstantLight {
+    /// Equal energy of radiance 1.
+    fn default() -> Self {
+        let radiance = SpectralCurve::constant_emission(1.0);
+        Self {
+            radiance: radiance.unwrap_or(SpectralCurve::BLACK),
+        }
+    }
+}
+
 impl ConstantLight {
     pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
         let radiance = spectrum_or(object, "radiance", Quantity::Emission, 1.0)?;

@@ -42,9 +42,13 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Emitter, Scen
 }
 
 /// The emitter of a scene file that stands in a shape.
-pub(super) fn load_area(object: &Object, shape: ShapeId) -> Result<AreaLight, SceneError> {
+pub(super) fn load_area(
+    object: &Object,
+    shape: ShapeId,
+    loader: &mut Loader,
+) -> Result<AreaLight, SceneError> {
     match object.plugin.as_str() {
-        "area" => AreaLight::load(object, shape),
+        "area" => AreaLight::load(object, shape, loader),
         name if SUPPORTED.contains(&name) => {
             Err(object.error(format!("`{name}` cannot stand in a shape; only `area` can")))
         }
@@ -118,12 +122,19 @@ impl Emitter {
         }
     }
 
-    /// The rectangle (or another parallelogram) that it is, if it is one.
+    /// The rectangle (or another parallelogram) that it is, if it is one of the same radiance everywhere.
     pub(crate) fn parallelogram(&self, shapes: &[Shape]) -> Option<Parallelogram> {
         match self {
-            Self::Area(light) => shapes[light.shape.index()].geometry.parallelogram(),
+            Self::Area(light) if !light.radiance.varies() => {
+                shapes[light.shape.index()].geometry.parallelogram()
+            }
             _ => None,
         }
+    }
+
+    /// Whether it is a shape whose radiance varies over its surface.
+    pub fn is_textured_area(&self) -> bool {
+        matches!(self, Self::Area(light) if light.radiance.varies())
     }
 
     /// Whether only next-event estimation can find this light.

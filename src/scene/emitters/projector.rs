@@ -50,7 +50,26 @@ enum Irradiance {
     Image(Bitmap),
 }
 
+impl Irradiance {
+    /// The same, without an image where that is of one colour.
+    fn without_flat_image(self) -> Self {
+        let colour = match &self {
+            Self::Even(_) => None,
+            Self::Image(image) => image.uniform(),
+        };
+        match colour.map(SpectralCurve::rgb_reflectance) {
+            Some(Ok(colour)) => Self::Even(colour),
+            _ => self,
+        }
+    }
+}
+
 impl Projector {
+    /// Whether it throws an image.
+    pub fn is_textured(&self) -> bool {
+        matches!(self.irradiance, Irradiance::Image(_))
+    }
+
     pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Self, SceneError> {
         const NAME: &str = "irradiance";
         let scale = object.float_or("scale", 1.0)?;
@@ -88,6 +107,7 @@ impl Projector {
             Irradiance::Even(_) => Vec2::ONE,
             Irradiance::Image(image) => image.size().as_vec2(),
         };
+        let irradiance = irradiance.without_flat_image();
         let aspect = f64::from(size.x / size.y);
         let half_width = field_of_view.half_width(aspect);
         Ok(Self {
@@ -108,6 +128,15 @@ impl Projector {
             Irradiance::Image(image) => Vec3::splat(image.mean()),
         };
         self.scale * rgb.dot(Vec3::new(0.212_671, 0.715_160, 0.072_169))
+    }
+
+    /// Takes out the image.
+    pub(in crate::scene) fn make_even(&mut self) {
+        if let Irradiance::Image(image) = &self.irradiance
+            && let Ok(grey) = SpectralCurve::rgb_reflectance([image.mean(); 3])
+        {
+            self.irradiance = Irradiance::Even(grey);
+        }
     }
 
     /// A cone that holds all directions in world space into which it shines.

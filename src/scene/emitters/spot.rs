@@ -95,6 +95,11 @@ impl SpotLight {
         })
     }
 
+    /// Takes out the image.
+    pub(in crate::scene) fn make_even(&mut self) {
+        self.texture.make_uniform();
+    }
+
     /// The directions in world space into which it shines; `None` where they are no circular cone.
     pub fn directions(&self) -> Option<Cone> {
         let local = self.to_local * (1.0 / self.to_local.determinant().abs().cbrt());

@@ -182,7 +182,7 @@ const LOOK: &str =
     r#"<transform name="to_world"><lookat origin="1 2 3" target="0 0 1" up="0 0 1"/></transform>"#;
 
 /// A bitmap of 3 x 2 pixels, called `name`, whose file lies in `folder`.
-fn bitmap(name: &str, folder: &std::path::Path) -> String {
+pub(super) fn bitmap(name: &str, folder: &std::path::Path) -> String {
     const ROWS: [[[f32; 3]; 3]; 2] = [
         [[0.9, 0.1, 0.2], [0.2, 0.6, 0.3], [0.1, 0.3, 0.8]],
         [[0.5, 0.5, 0.5], [0.0, 0.0, 0.0], [1.0, 1.0, 0.2]],

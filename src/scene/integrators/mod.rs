@@ -8,7 +8,7 @@ use super::error::SceneError;
 use super::xml::Object;
 
 /// What a scene file says of the paths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PathIntegrator {
     /// Most segments of a path, camera ray included; `None` for no limit. 1 shows emitters only, 2 adds direct light.
     pub max_depth: Option<u32>,
@@ -18,8 +18,8 @@ pub struct PathIntegrator {
     pub hide_emitters: bool,
     /// How often paths branch at every surface.
     pub samples: SurfaceSamples,
-    /// Whether the scene asks for the second moments of its samples too.
-    pub second_moments: bool,
+    /// What the channels are called in which the scene asks for the moments of its samples; none where it does not.
+    pub moments: Option<String>,
 }
 
 /// How many samples are taken at every surface that a path reaches.
@@ -48,7 +48,7 @@ impl Default for PathIntegrator {
             roulette_depth: 5,
             hide_emitters: false,
             samples: SurfaceSamples::default(),
-            second_moments: false,
+            moments: None,
         }
     }
 }

@@ -9,6 +9,7 @@ use super::cone::Cone;
 use crate::scene::Shape;
 use crate::scene::emitters::Emitter;
 use crate::scene::shapes::{Geometry, HitCoordinates};
+use crate::scene::textures;
 use crate::spectrum::SpectralCurve;
 
 /// Where an emitter is.
@@ -24,14 +25,14 @@ impl Place {
     /// The place of an emitter; `None` if it sends nothing.
     pub fn of(emitter: &Emitter, shapes: &[Shape]) -> Option<Self> {
         match emitter {
-            Emitter::Area(light) if light.radiance.is_black() => None,
+            Emitter::Area(light) if light.is_black() => None,
             Emitter::Area(light) => {
                 let geometry = &shapes[light.shape.index()].geometry;
                 let [min, max] = geometry.bounds();
                 Some(Self::Near(LightBounds {
                     min,
                     max,
-                    power: PI * geometry.area() * luminance(&light.radiance),
+                    power: PI * geometry.area() * light.mean_luminance(geometry),
                     normals: normals(geometry),
                     spread: FRAC_PI_2,
                 }))
@@ -75,7 +76,7 @@ impl Place {
 }
 
 fn luminance(curve: &SpectralCurve) -> f32 {
-    Vec3::from(curve.rgb()).dot(Vec3::new(0.212_671, 0.715_160, 0.072_169))
+    textures::luminance(curve.rgb())
 }
 
 /// The normals on whose side a shape shines.

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use super::Loader;
-use crate::scene::bsdfs::{self, Material};
+use crate::scene::bsdfs;
 use crate::scene::emitters::{self, Emitter};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::{self, Geometry, Instance, Shape, ShapeGroup};
 use crate::scene::source::Source;
 use crate::scene::xml::{Child, Class, Object};
 use crate::scene::{ShapeGroupId, ShapeId};
+use crate::spectrum::MAX_EMISSION;
 
 impl Loader<'_> {
     /// Loads the shapes of the scene: those that stand in the world, then the groups that instances show. Returns the instances.
@@ -62,7 +63,7 @@ impl Loader<'_> {
         let mut geometry = shapes::load(object, self)?;
         if let Some(child) = object.child(Class::Bsdf)? {
             let material = bsdfs::load(&child.object, &mut self.textures)?;
-            keep_attributes(object, &mut geometry, &material)?;
+            keep_attributes(object, &mut geometry, &material.attributes(), &[])?;
         }
         object.finish()
     }
@@ -75,11 +76,24 @@ impl Loader<'_> {
             Some(child) => self.material(&child.object)?,
             None => self.default_material(light.is_some()),
         };
-        keep_attributes(object, &mut geometry, &self.materials[material.index()])?;
         let id = ShapeId(self.shapes.len() as u32);
+        let light = match light {
+            Some(child) => Some((emitters::load_area(&child.object, id, self)?, child)),
+            None => None,
+        };
+        let material_attributes = self.materials[material.index()].attributes();
+        let light_attributes = match &light {
+            Some((light, _)) => light.attributes(),
+            None => &[],
+        };
+        keep_attributes(
+            object,
+            &mut geometry,
+            &material_attributes,
+            light_attributes,
+        )?;
         let emitter = match light {
-            Some(child) => {
-                let light = emitters::load_area(&child.object, id)?;
+            Some((light, child)) => {
                 if let Geometry::Triangles(mesh) = &mut geometry
                     && !mesh.prepare_sampling()
                 {
@@ -99,29 +113,44 @@ impl Loader<'_> {
     }
 }
 
-/// Keeps of what a shape's mesh says what its material asks for; it is an error if that is not there.
+/// Keeps of what a shape's mesh says what its material and its light ask for; it is an error if that is not there.
 fn keep_attributes(
     object: &Object,
     geometry: &mut Geometry,
-    material: &Material,
+    of_material: &[&str],
+    of_light: &[String],
 ) -> Result<(), SceneError> {
-    let names = material.attributes();
+    let names = of_light.iter().map(String::as_str);
+    let names: Vec<&str> = of_material.iter().copied().chain(names).collect();
     let missing = match geometry {
         Geometry::Triangles(mesh) => mesh.keep_attributes(&names).err(),
         _ => names.first().copied(),
     };
     if let Some(missing) = missing {
+        let who = if of_material.contains(&missing) {
+            "bsdf"
+        } else {
+            "light"
+        };
         return Err(object.error(format!(
-            "the bsdf asks for the mesh attribute `{missing}`, which this {object} does not have"
+            "the {who} asks for the mesh attribute `{missing}`, which this {object} does not have"
         )));
     }
     let Geometry::Triangles(mesh) = geometry else {
         return Ok(());
     };
     for attribute in mesh.named_attributes() {
-        if let Some(number) = attribute.colour_outside_unit() {
+        let (greatest, range) = if of_material.contains(&attribute.name.as_str()) {
+            (1.0, "colours are linear sRGB from 0 to 1")
+        } else {
+            (
+                MAX_EMISSION,
+                "colours of lights are linear sRGB from 0 to 1e30",
+            )
+        };
+        if let Some(number) = attribute.colour_outside(0.0..=greatest) {
             return Err(object.error(format!(
-                "the mesh attribute `{}` has {number}; colours are linear sRGB from 0 to 1",
+                "the mesh attribute `{}` has {number}; {range}",
                 attribute.name
             )));
         }

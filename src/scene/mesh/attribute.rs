@@ -1,5 +1,7 @@
 //! What a mesh says of its vertices or faces beside the form, such as a colour.
 
+use std::ops::RangeInclusive;
+
 use crate::spectrum::Reflectances;
 
 /// Something that a mesh says of all vertices or of all faces.
@@ -23,13 +25,13 @@ pub enum AttributeValues {
 }
 
 impl MeshAttribute {
-    /// The first colour component that is not in [0, 1].
-    pub fn colour_outside_unit(&self) -> Option<f32> {
+    /// The first colour component that is not in `range`.
+    pub fn colour_outside(&self, range: RangeInclusive<f32>) -> Option<f32> {
         match &self.values {
             AttributeValues::Numbers(_) => None,
             AttributeValues::Colours(colours) => {
                 let mut components = colours.all_rgb().iter().flatten().copied();
-                components.find(|component| !(0.0..=1.0).contains(component))
+                components.find(|component| !range.contains(component))
             }
         }
     }

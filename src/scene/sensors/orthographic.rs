@@ -32,6 +32,11 @@ impl Orthographic {
         Self::new(to_world, clip).map_err(|error| object.error(error.to_string()))
     }
 
+    /// From camera to world space.
+    pub fn to_world(&self) -> DMat4 {
+        self.to_world
+    }
+
     /// The camera whose space `to_world` maps to world space (its film is \[-1, 1\] wide about the origin, it looks along
     /// +z, +y is up, +x is left), clipping at the depth `near` of its space and `far - near` scene units farther.
     pub fn new(to_world: DMat4, (near, far): (f64, f64)) -> Result<Self, CameraError> {

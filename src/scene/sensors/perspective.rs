@@ -44,6 +44,12 @@ impl Perspective {
             .map_err(|error| object.error(error.to_string()))
     }
 
+    /// The camera whose space `to_world` maps to world space, with the defaults of scene files otherwise; none where there is no such one.
+    pub fn usual(to_world: DMat4) -> Option<Self> {
+        let normal_lens = FieldOfView::from_focal_length(50.0);
+        Self::new(to_world, normal_lens, (1e-2, 1e4), Vec2::ZERO).ok()
+    }
+
     /// The camera whose space `to_world` maps to world space (it looks along +z, +y is up, +x is left), clipping at the
     /// depths `near` and `far` in scene units, its image shifted by `principal_point_offset` in fractions of its size.
     pub fn new(

@@ -53,6 +53,11 @@ pub(super) fn load(object: &Object) -> Result<Camera, SceneError> {
 }
 
 impl ThinLens {
+    /// The camera that it would be if the lens were a point.
+    pub fn pinhole(&self) -> Perspective {
+        self.perspective
+    }
+
     /// The camera that is `perspective`, whose `to_world` does not scale, with a lens of this `radius`, in focus at the
     /// depth `focus_distance`, both in scene units.
     pub fn new(

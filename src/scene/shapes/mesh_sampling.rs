@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{SurfacePoint, Triangles};
+use super::{HitCoordinates, SurfacePoint, Triangles};
 use crate::sampling::{AliasTable, warp};
 
 /// How points of a mesh are drawn uniformly by area.
@@ -63,11 +63,7 @@ impl MeshSampling {
     #[inline(always)]
     pub fn sample(&self, mesh: &Triangles, u: [f32; 2]) -> SurfacePoint {
         match *self {
-            Self::ByTriangle(ref table) => {
-                let chosen = table.sample(u[0]);
-                let [v, w] = warp::triangle([chosen.remainder, u[1]]);
-                mesh.point(chosen.index as u32, v, w)
-            }
+            Self::ByTriangle(_) => mesh.surface(&self.hit(u)),
             Self::Parallelogram(Parallelogram {
                 corner,
                 first_edge,
@@ -77,6 +73,29 @@ impl MeshSampling {
                 position: corner.position + u[0] * first_edge + u[1] * second_edge,
                 ..corner
             },
+        }
+    }
+
+    /// Where a ray would hit the point that [`Self::sample`] draws from `u`.
+    #[inline(always)]
+    pub fn hit(&self, u: [f32; 2]) -> HitCoordinates {
+        let (primitive, [u, v]) = match self {
+            Self::ByTriangle(table) => {
+                let chosen = table.sample(u[0]);
+                (
+                    chosen.index as u32,
+                    warp::triangle([chosen.remainder, u[1]]),
+                )
+            }
+            // The triangles `a b c` and `c d a`.
+            Self::Parallelogram(_) if u[1] <= u[0] => (0, [u[0] - u[1], u[1]]),
+            Self::Parallelogram(_) => (1, [u[1] - u[0], 1.0 - u[1]]),
+        };
+        HitCoordinates {
+            primitive,
+            u,
+            v,
+            normal: Vec3::Z,
         }
     }
 }

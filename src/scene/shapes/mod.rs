@@ -6,6 +6,7 @@
 mod cube;
 mod cylinder;
 mod disk;
+mod drawn;
 mod extent;
 mod instance;
 mod lanes;

@@ -50,13 +50,13 @@ impl SurfaceParameters<'_> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::scene::shapes::{Geometry, HitCoordinates};
     use crate::scene::{LoadOptions, Scene};
 
     /// The shape that `xml` states, moved by `rotate(normalize([1, 2, 3]), 40).scale(2)`.
-    fn geometry(xml: &str) -> Geometry {
+    pub fn geometry(xml: &str) -> Geometry {
         let scene = format!(
             r#"<scene version="3.0.0"><sensor type="perspective"/><shape {xml}<transform name="to_world"><scale value="2"/>
                 <rotate x="0.26726124" y="0.53452248" z="0.80178373" angle="40"/></transform></shape></scene>"#
@@ -66,7 +66,7 @@ mod tests {
     }
 
     /// Where a ray meets a shape.
-    fn hit(geometry: &Geometry, origin: Vec3, direction: Vec3) -> HitCoordinates {
+    pub fn hit(geometry: &Geometry, origin: Vec3, direction: Vec3) -> HitCoordinates {
         let far = 1e6;
         let (primitive, u, v, normal) = match geometry {
             Geometry::Sphere(sphere) => {

@@ -306,6 +306,19 @@ impl Triangles {
         };
         ShapeSample::by_area(reference, point, self.area)
     }
+
+    /// Where a ray would hit the point that [`Self::sample`] draws from `u`.
+    pub(super) fn hit_of_sample(&self, u: [f32; 2]) -> HitCoordinates {
+        match &self.sampling {
+            Some(sampling) => sampling.hit(u),
+            None => HitCoordinates {
+                primitive: 0,
+                u: u[0],
+                v: u[1] * (1.0 - u[0]),
+                normal: Vec3::Z,
+            },
+        }
+    }
 }
 
 fn triangle_areas(vertices: &VertexBuffer, indices: &[[u32; 3]]) -> impl Iterator<Item = f32> {

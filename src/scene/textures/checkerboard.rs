@@ -13,6 +13,7 @@ use glam::{Affine2, Vec2};
 use super::{SpectrumTexture, TextureLoader};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
+use crate::scene::spectra::Quantity;
 use crate::scene::xml::Object;
 use crate::spectrum::SpectralCurve;
 
@@ -24,11 +25,15 @@ pub struct Checkerboard {
 }
 
 impl Checkerboard {
-    pub(super) fn load(object: &Object, loader: &mut TextureLoader) -> Result<Self, SceneError> {
+    pub(super) fn load(
+        object: &Object,
+        loader: &mut TextureLoader,
+        quantity: Quantity,
+    ) -> Result<Self, SceneError> {
         let board = Self {
             colours: [
-                loader.reflectance(object, "color0", 0.4)?,
-                loader.reflectance(object, "color1", 0.2)?,
+                loader.colour_or(object, "color0", quantity, 0.4)?,
+                loader.colour_or(object, "color1", quantity, 0.2)?,
             ],
             to_uv: super::loader::to_uv(object)?,
         };

@@ -14,13 +14,13 @@ use crate::scene::error::SceneError;
 use crate::scene::image_file::{ImageFile, ImageFileError};
 use crate::scene::spectra::{Quantity, Stated, number, stated};
 use crate::scene::xml::{Document, Object, SpectrumProperty};
-use crate::spectrum::SpectralCurve;
+use crate::spectrum::{MAX_EMISSION, SpectralCurve};
 
 /// Loads textures, each file once.
 pub(in crate::scene) struct TextureLoader<'d> {
     document: &'d Document,
-    /// Images by file and by whether they are raw.
-    images: HashMap<(PathBuf, bool), Arc<Texels>>,
+    /// Images by file, by whether they are raw, and by what they are images of.
+    images: HashMap<(PathBuf, bool, Quantity), Arc<Texels>>,
     /// Mesh attributes that textures asked for since they were [taken](Self::take_attributes).
     attributes: Vec<String>,
 }
@@ -53,18 +53,55 @@ impl<'d> TextureLoader<'d> {
         name: &'static str,
         default: f32,
     ) -> Result<SpectrumTexture, SceneError> {
-        let curve = match object.spectrum(name)? {
-            Some(property) => match stated(property, Quantity::Reflectance) {
-                Stated::Texture(texture) => match self.texture(&texture)? {
-                    Loaded::Pattern(pattern) => return Ok(SpectrumTexture::Varying(pattern)),
-                    Loaded::Uniform(curve) => Ok(curve),
-                },
-                Stated::Curve(curve) => curve,
+        self.colour_or(object, name, Quantity::Reflectance, default)
+    }
+
+    /// The emission that `object` has under `name`, if it has one.
+    pub fn emission(
+        &mut self,
+        object: &Object,
+        name: &'static str,
+    ) -> Result<Option<SpectrumTexture>, SceneError> {
+        let colours_of_textures = Quantity::TextureEmission;
+        self.colour(object, name, Quantity::Emission, colours_of_textures)
+    }
+
+    /// The colour of `quantity` that `object` has under `name`, or what the number `default` means.
+    pub(super) fn colour_or(
+        &mut self,
+        object: &Object,
+        name: &'static str,
+        quantity: Quantity,
+        default: f32,
+    ) -> Result<SpectrumTexture, SceneError> {
+        if let Some(colour) = self.colour(object, name, quantity, quantity)? {
+            return Ok(colour);
+        }
+        number(default, quantity)
+            .map(SpectrumTexture::Uniform)
+            .map_err(|error| object.error(format!("`{name}`: {error}")))
+    }
+
+    /// The colour of `quantity` that `object` has under `name`; that of a texture is one `of_textures`.
+    fn colour(
+        &mut self,
+        object: &Object,
+        name: &'static str,
+        quantity: Quantity,
+        of_textures: Quantity,
+    ) -> Result<Option<SpectrumTexture>, SceneError> {
+        let Some(property) = object.spectrum(name)? else {
+            return Ok(None);
+        };
+        let curve = match stated(property, quantity) {
+            Stated::Texture(texture) => match self.texture(&texture, of_textures)? {
+                Loaded::Pattern(pattern) => return Ok(Some(SpectrumTexture::Varying(pattern))),
+                Loaded::Uniform(curve) => Ok(curve),
             },
-            None => number(default, Quantity::Reflectance),
+            Stated::Curve(curve) => curve,
         };
         curve
-            .map(SpectrumTexture::Uniform)
+            .map(|curve| Some(SpectrumTexture::Uniform(curve)))
             .map_err(|error| object.parameter_error(name, format!("`{name}`: {error}")))
     }
 
@@ -85,10 +122,12 @@ impl<'d> TextureLoader<'d> {
                 let message = format!("`{name}` has to be a number or a texture, not a spectrum");
                 return Err(object.parameter_error(name, message));
             }
-            Some(SpectrumProperty::Texture(texture)) => match self.texture(&texture)? {
-                Loaded::Pattern(pattern) => return Ok(FloatTexture::Varying(pattern)),
-                Loaded::Uniform(curve) => luminance(curve.rgb()),
-            },
+            Some(SpectrumProperty::Texture(texture)) => {
+                match self.texture(&texture, Quantity::Reflectance)? {
+                    Loaded::Pattern(pattern) => return Ok(FloatTexture::Varying(pattern)),
+                    Loaded::Uniform(curve) => luminance(curve.rgb()),
+                }
+            }
         };
         Ok(FloatTexture::Uniform(value))
     }
@@ -98,24 +137,25 @@ impl<'d> TextureLoader<'d> {
         if object.plugin != "bitmap" {
             return Err(object.unsupported(&["bitmap"]));
         }
-        let texels = self.texels(object)?;
+        let texels = self.texels(object, Quantity::Reflectance)?;
         Bitmap::load(object, texels)
     }
 
-    fn texture(&mut self, object: &Object) -> Result<Loaded, SceneError> {
+    /// The texture that `object` is, whose colours are ones of `quantity`.
+    fn texture(&mut self, object: &Object, quantity: Quantity) -> Result<Loaded, SceneError> {
         match object.plugin.as_str() {
             "bitmap" => {
-                let texels = self.texels(object)?;
+                let texels = self.texels(object, quantity)?;
                 let bitmap = Bitmap::load(object, texels)?;
                 match bitmap.uniform() {
-                    Some(rgb) => SpectralCurve::rgb_reflectance(rgb)
+                    Some(rgb) => SpectralCurve::rgb_unbounded(rgb)
                         .map(Loaded::Uniform)
                         .map_err(|error| object.error(error.to_string())),
                     None => Ok(Loaded::Pattern(Pattern::Bitmap(bitmap))),
                 }
             }
             "checkerboard" => {
-                let board = Checkerboard::load(object, self)?;
+                let board = Checkerboard::load(object, self, quantity)?;
                 Ok(match board.uniform() {
                     Some(colour) => Loaded::Uniform(colour.clone()),
                     None => Loaded::Pattern(Pattern::Checkerboard(Box::new(board))),
@@ -130,14 +170,14 @@ impl<'d> TextureLoader<'d> {
         }
     }
 
-    /// The image file that `object` names, whose numbers must all be in [0, 1].
-    fn texels(&mut self, object: &Object) -> Result<Arc<Texels>, SceneError> {
+    /// The image file that `object` names, of colours of `quantity`.
+    fn texels(&mut self, object: &Object, quantity: Quantity) -> Result<Arc<Texels>, SceneError> {
         let filename = object
             .string("filename")?
             .ok_or_else(|| object.missing("filename"))?;
         let raw = object.boolean_or("raw", false)?;
         let path = self.document.resolve(object, "filename", filename)?;
-        let key = (path, raw);
+        let key = (path, raw, quantity);
         if let Some(known) = self.images.get(&key) {
             return Ok(known.clone());
         }
@@ -145,8 +185,15 @@ impl<'d> TextureLoader<'d> {
             |problem: ImageFileError| object.parameter_error("filename", problem.to_string());
         let image = ImageFile::read(&key.0).map_err(located)?;
         let image = if raw { image } else { image.into_linear() };
-        if let Some(problem) = image.find_unfit(|number| (0.0..=1.0).contains(&number)) {
-            let problem = format!("{problem}; a texture has numbers from 0 to 1");
+        let (greatest, range) = match quantity {
+            Quantity::TextureEmission => (
+                MAX_EMISSION,
+                "the texture of a lamp has numbers from 0 to 1e30",
+            ),
+            _ => (1.0, "a texture has numbers from 0 to 1"),
+        };
+        if let Some(problem) = image.find_unfit(|number| (0.0..=greatest).contains(&number)) {
+            let problem = format!("{problem}; {range}");
             let file = key.0;
             return Err(located(ImageFileError { file, problem }));
         }

@@ -87,6 +87,18 @@ impl SpectrumTexture {
     pub fn varies(&self) -> bool {
         matches!(self, Self::Varying(_))
     }
+
+    /// Makes it a grey, its [mean](Self::mean), where it varies.
+    pub(super) fn make_uniform(&mut self) {
+        if self.varies() {
+            *self = Self::grey(self.mean());
+        }
+    }
+
+    /// The same number in all channels and at all wavelengths: nothing where that is negative or infinite.
+    pub(super) fn grey(number: f32) -> Self {
+        Self::Uniform(SpectralCurve::rgb_unbounded([number; 3]).unwrap_or(SpectralCurve::BLACK))
+    }
 }
 
 impl FloatTexture {
@@ -102,6 +114,24 @@ impl FloatTexture {
     /// Whether it asks for the coordinates of the point.
     pub fn varies(&self) -> bool {
         matches!(self, Self::Varying(_))
+    }
+
+    /// Whether a number from 0 on is more than 0 somewhere.
+    pub(super) fn can_be_positive(&self) -> bool {
+        !matches!(self, Self::Uniform(0.0))
+    }
+
+    /// The mean over points, about.
+    pub fn mean(&self) -> f32 {
+        match self {
+            Self::Uniform(value) => *value,
+            Self::Varying(pattern) => pattern.mean(),
+        }
+    }
+
+    /// Makes it its [mean](Self::mean).
+    pub(super) fn make_uniform(&mut self) {
+        *self = Self::Uniform(self.mean());
     }
 }
 
@@ -145,7 +175,7 @@ impl Pattern {
 }
 
 /// Luminance of linear sRGB (ITU-R BT.709).
-pub(super) fn luminance(rgb: [f32; 3]) -> f32 {
+pub(in crate::scene) fn luminance(rgb: [f32; 3]) -> f32 {
     0.212_671 * rgb[0] + 0.715_160 * rgb[1] + 0.072_169 * rgb[2]
 }
 

@@ -56,6 +56,31 @@ fn tables_have_mitsubas_colours() {
 }
 
 #[test]
+fn flat_tables_are_constants() {
+    type Load = fn(&[(f32, f32)]) -> Result<SpectralCurve, CurveError>;
+    let all: [Load; 6] = [
+        SpectralCurve::tabulated_reflectance,
+        SpectralCurve::tabulated_emission,
+        SpectralCurve::tabulated_unbounded,
+        SpectralCurve::tabulated_index,
+        SpectralCurve::material_index,
+        SpectralCurve::glass_index,
+    ];
+    for load in all {
+        let regular = load(&[(300.0, 0.7), (600.0, 0.7), (900.0, 0.7)]).unwrap();
+        let irregular = load(&[(360.0, 0.7), (500.0, 0.7), (830.0, 0.7)]).unwrap();
+        for flat in [regular, irregular] {
+            assert!(flat.is_constant(), "{flat:?}");
+            assert_eq!(values(&flat), [0.7; 4]);
+        }
+        let bent = load(&[(300.0, 0.7), (600.0, 0.7), (900.0, 0.6)]).unwrap();
+        // Beyond its ends it is zero.
+        let short = load(&[(400.0, 0.7), (900.0, 0.7)]).unwrap();
+        assert!(!bent.is_constant() && !short.is_constant());
+    }
+}
+
+#[test]
 fn indices_have_mitsubas_channels() {
     // mi.load_string('<bsdf version="3.0.0" type="conductor"><spectrum name="eta" value="…"/></bsdf>'), scalar_rgb
     let table = [(400.0, 1.3), (500.0, 2.0), (700.0, 0.7)];

@@ -3,10 +3,12 @@
 //! Burley 2012, "Physically Based Shading at Disney", and 2015, "Extending the Disney BRDF to a BSDF with Integrated Subsurface
 //! Scattering", as Mitsuba has them. This file has the lobes that both share.
 
+mod common;
 mod solid;
 mod solid_material;
 mod thin;
 
+pub use common::CommonParameters;
 pub use solid::Principled;
 pub use solid_material::PrincipledMaterial;
 pub use thin::{PrincipledThin, PrincipledThinMaterial};

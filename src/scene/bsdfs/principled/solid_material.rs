@@ -20,11 +20,11 @@
 //! All but `eta` and the rates are in [0, 1]. Tints are by the luminance of the colour, in three channels and by wavelength alike.
 
 use super::solid::{Principled, SamplingRates};
-use super::{CoatFacets, facets, sampling_rate, share};
+use super::{CoatFacets, CommonParameters, facets, sampling_rate, share};
 use crate::scene::bsdfs::Side;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
-use crate::scene::textures::{FloatTexture, SpectrumTexture, TextureLoader};
+use crate::scene::textures::{FloatTexture, TextureLoader};
 use crate::scene::xml::Object;
 use crate::spectrum::Colour;
 
@@ -32,15 +32,8 @@ use crate::spectrum::Colour;
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
 pub struct PrincipledMaterial {
-    pub base_color: SpectrumTexture,
-    pub roughness: FloatTexture,
-    pub anisotropic: FloatTexture,
+    pub common: CommonParameters,
     pub metallic: FloatTexture,
-    pub spec_trans: FloatTexture,
-    pub spec_tint: FloatTexture,
-    pub sheen: FloatTexture,
-    pub sheen_tint: FloatTexture,
-    pub flatness: FloatTexture,
     pub clearcoat: FloatTexture,
     pub clearcoat_gloss: FloatTexture,
     pub eta: f32,
@@ -52,64 +45,44 @@ impl PrincipledMaterial {
         object: &Object,
         textures: &mut TextureLoader,
     ) -> Result<Self, SceneError> {
+        let common = CommonParameters::load(object, textures)?;
         let mut number = |name, default| share(object, textures, name, default, 1.0);
-        let roughness = number("roughness", 0.5)?;
-        let anisotropic = number("anisotropic", 0.0)?;
-        let metallic = number("metallic", 0.0)?;
-        let spec_trans = number("spec_trans", 0.0)?;
-        let spec_tint = number("spec_tint", 0.0)?;
-        let sheen = number("sheen", 0.0)?;
-        let sheen_tint = number("sheen_tint", 0.0)?;
-        let flatness = number("flatness", 0.0)?;
-        let clearcoat = number("clearcoat", 0.0)?;
-        let clearcoat_gloss = number("clearcoat_gloss", 0.0)?;
-        let transmits = can_be_positive(&spec_trans);
         let material = Self {
-            base_color: textures.reflectance(object, "base_color", 0.5)?,
-            eta: load_eta(object, transmits)?,
+            metallic: number("metallic", 0.0)?,
+            clearcoat: number("clearcoat", 0.0)?,
+            clearcoat_gloss: number("clearcoat_gloss", 0.0)?,
+            eta: load_eta(object, common.is_transmissive())?,
+            common,
             sampling: SamplingRates {
                 diffuse: sampling_rate(object, "diffuse_reflectance_sampling_rate")?,
                 specular: sampling_rate(object, "main_specular_sampling_rate")?,
                 clearcoat: sampling_rate(object, "clearcoat_sampling_rate")?,
             },
-            roughness,
-            anisotropic,
-            metallic,
-            spec_trans,
-            spec_tint,
-            sheen,
-            sheen_tint,
-            flatness,
-            clearcoat,
-            clearcoat_gloss,
         };
         object.finish()?;
         Ok(material)
     }
 
     pub(in crate::scene::bsdfs) fn is_transmissive(&self) -> bool {
-        can_be_positive(&self.spec_trans)
+        self.common.is_transmissive()
     }
 
     pub(in crate::scene::bsdfs) fn needs_parameters(&self) -> bool {
-        can_be_positive(&self.anisotropic) || self.varies()
+        self.common.anisotropic.can_be_positive() || self.varies()
     }
 
     /// Whether it differs from point to point.
     pub(in crate::scene::bsdfs) fn varies(&self) -> bool {
-        let numbers = [
-            &self.anisotropic,
-            &self.roughness,
-            &self.metallic,
-            &self.spec_trans,
-            &self.spec_tint,
-            &self.sheen,
-            &self.sheen_tint,
-            &self.flatness,
-            &self.clearcoat,
-            &self.clearcoat_gloss,
-        ];
-        self.base_color.varies() || numbers.iter().any(|number| number.varies())
+        let own = [&self.metallic, &self.clearcoat, &self.clearcoat_gloss];
+        self.common.varies() || own.into_iter().any(FloatTexture::varies)
+    }
+
+    /// Makes it the same everywhere, with the means of its textures.
+    pub(in crate::scene::bsdfs) fn make_uniform(&mut self) {
+        self.common.make_uniform();
+        self.metallic.make_uniform();
+        self.clearcoat.make_uniform();
+        self.clearcoat_gloss.make_uniform();
     }
 
     pub(in crate::scene::bsdfs) fn at<C: Colour>(
@@ -118,21 +91,24 @@ impl PrincipledMaterial {
         point: &SurfaceParameters,
         wavelengths: &C::Wavelengths,
     ) -> Principled<C::Spectrum> {
-        let (metallic, spec_trans) = (self.metallic.number(point), self.spec_trans.number(point));
-        let roughness = self.roughness.number(point);
+        let (metallic, spec_trans) = (
+            self.metallic.number(point),
+            self.common.spec_trans.number(point),
+        );
+        let roughness = self.common.roughness.number(point);
         Principled {
             side,
-            base_color: self.base_color.spectrum::<C>(point, wavelengths),
-            luminance: self.base_color.number(point),
-            facets: facets(roughness, self.anisotropic.number(point)),
+            base_color: self.common.base_color.spectrum::<C>(point, wavelengths),
+            luminance: self.common.base_color.number(point),
+            facets: facets(roughness, self.common.anisotropic.number(point)),
             roughness,
             metallic,
             opaque: (1.0 - metallic) * (1.0 - spec_trans),
             glassy: (1.0 - metallic) * spec_trans,
-            spec_tint: self.spec_tint.number(point),
-            sheen: self.sheen.number(point),
-            sheen_tint: self.sheen_tint.number(point),
-            flatness: self.flatness.number(point),
+            spec_tint: self.common.spec_tint.number(point),
+            sheen: self.common.sheen.number(point),
+            sheen_tint: self.common.sheen_tint.number(point),
+            flatness: self.common.flatness.number(point),
             clearcoat: self.clearcoat.number(point),
             coat: CoatFacets::new(self.clearcoat_gloss.number(point)),
             eta: match side {
@@ -142,10 +118,6 @@ impl PrincipledMaterial {
             sampling: self.sampling,
         }
     }
-}
-
-fn can_be_positive(number: &FloatTexture) -> bool {
-    !matches!(number, FloatTexture::Uniform(0.0))
 }
 
 /// The relative index of refraction, from `eta` or `specular`. A surface that lets light through must have one that is not 1.

@@ -21,15 +21,15 @@ use std::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 
 use super::{
-    diffuse, diffuse_albedo, facets, interface_weight, normal_reflectance, sampling_rate, schlick,
-    schlick_weight, share, tint,
+    CommonParameters, diffuse, diffuse_albedo, facets, interface_weight, normal_reflectance,
+    sampling_rate, schlick, schlick_weight, share, tint,
 };
 use crate::sampling::warp;
 use crate::scene::bsdfs::microfacet::Microfacets;
 use crate::scene::bsdfs::{BsdfSample, BsdfValue, fresnel, mixed_shininess};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
-use crate::scene::textures::{FloatTexture, SpectrumTexture, TextureLoader};
+use crate::scene::textures::{FloatTexture, TextureLoader};
 use crate::scene::xml::Object;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -37,15 +37,8 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
 pub struct PrincipledThinMaterial {
-    pub base_color: SpectrumTexture,
-    pub roughness: FloatTexture,
-    pub anisotropic: FloatTexture,
-    pub spec_trans: FloatTexture,
+    pub common: CommonParameters,
     pub eta: FloatTexture,
-    pub spec_tint: FloatTexture,
-    pub sheen: FloatTexture,
-    pub sheen_tint: FloatTexture,
-    pub flatness: FloatTexture,
     pub diff_trans: FloatTexture,
     /// Of specular reflection and transmission, diffuse reflection and transmission.
     pub sampling_rates: [f32; 4],
@@ -56,31 +49,17 @@ impl PrincipledThinMaterial {
         object: &Object,
         textures: &mut TextureLoader,
     ) -> Result<Self, SceneError> {
-        let mut number = |name, default| share(object, textures, name, default, 1.0);
-        let roughness = number("roughness", 0.5)?;
-        let anisotropic = number("anisotropic", 0.0)?;
-        let spec_trans = number("spec_trans", 0.0)?;
-        let spec_tint = number("spec_tint", 0.0)?;
-        let sheen = number("sheen", 0.0)?;
-        let sheen_tint = number("sheen_tint", 0.0)?;
-        let flatness = number("flatness", 0.0)?;
+        let common = CommonParameters::load(object, textures)?;
         let material = Self {
-            base_color: textures.reflectance(object, "base_color", 0.5)?,
             eta: textures.number(object, "eta", 1.5)?,
             diff_trans: share(object, textures, "diff_trans", 0.0, 2.0)?,
+            common,
             sampling_rates: [
                 sampling_rate(object, "specular_reflectance_sampling_rate")?,
                 sampling_rate(object, "specular_transmittance_sampling_rate")?,
                 sampling_rate(object, "diffuse_reflectance_sampling_rate")?,
                 sampling_rate(object, "diffuse_transmittance_sampling_rate")?,
             ],
-            roughness,
-            anisotropic,
-            spec_trans,
-            spec_tint,
-            sheen,
-            sheen_tint,
-            flatness,
         };
         object.finish()?;
         match material.eta {
@@ -93,23 +72,19 @@ impl PrincipledThinMaterial {
     }
 
     pub(in crate::scene::bsdfs) fn needs_parameters(&self) -> bool {
-        !matches!(self.anisotropic, FloatTexture::Uniform(0.0)) || self.varies()
+        self.common.anisotropic.can_be_positive() || self.varies()
     }
 
     /// Whether it differs from point to point.
     pub(in crate::scene::bsdfs) fn varies(&self) -> bool {
-        let numbers = [
-            &self.anisotropic,
-            &self.roughness,
-            &self.spec_trans,
-            &self.eta,
-            &self.spec_tint,
-            &self.sheen,
-            &self.sheen_tint,
-            &self.flatness,
-            &self.diff_trans,
-        ];
-        self.base_color.varies() || numbers.iter().any(|number| number.varies())
+        self.common.varies() || self.eta.varies() || self.diff_trans.varies()
+    }
+
+    /// Makes it the same everywhere, with the means of its textures.
+    pub(in crate::scene::bsdfs) fn make_uniform(&mut self) {
+        self.common.make_uniform();
+        self.eta.make_uniform();
+        self.diff_trans.make_uniform();
     }
 
     pub(in crate::scene::bsdfs) fn at<C: Colour>(
@@ -117,23 +92,23 @@ impl PrincipledThinMaterial {
         point: &SurfaceParameters,
         wavelengths: &C::Wavelengths,
     ) -> PrincipledThin<C::Spectrum> {
-        let (roughness, eta) = (self.roughness.number(point), self.eta.number(point));
-        let anisotropic = self.anisotropic.number(point);
+        let (roughness, eta) = (self.common.roughness.number(point), self.eta.number(point));
+        let anisotropic = self.common.anisotropic.number(point);
         // Light that goes through is spread by two faces (Burley 2015, figure 15).
         let spread = (0.65 * eta - 0.35) * roughness;
         PrincipledThin {
-            base_color: self.base_color.spectrum::<C>(point, wavelengths),
-            luminance: self.base_color.number(point),
+            base_color: self.common.base_color.spectrum::<C>(point, wavelengths),
+            luminance: self.common.base_color.number(point),
             facets: facets(roughness, anisotropic),
             spread_facets: facets(spread, anisotropic),
             roughness,
             eta,
-            specular: self.spec_trans.number(point),
+            specular: self.common.spec_trans.number(point),
             transmitted: 0.5 * self.diff_trans.number(point),
-            spec_tint: self.spec_tint.number(point),
-            sheen: self.sheen.number(point),
-            sheen_tint: self.sheen_tint.number(point),
-            flatness: self.flatness.number(point),
+            spec_tint: self.common.spec_tint.number(point),
+            sheen: self.common.sheen.number(point),
+            sheen_tint: self.common.sheen_tint.number(point),
+            flatness: self.common.flatness.number(point),
             sampling_rates: self.sampling_rates,
         }
     }
