@@ -77,7 +77,7 @@ impl Case {
 }
 
 /// The built-in scene, and that of the Armadillo where its model lies in `COHORT_MODELS` or `scenes/models`.
-fn scenes(effort: Effort) -> Result<Vec<(&'static str, Arc<Scene>)>, SceneError> {
+pub fn scenes(effort: Effort) -> Result<Vec<(&'static str, Arc<Scene>)>, SceneError> {
     let side = effort.choose(32, 96, 256);
     let options = |models| LoadOptions {
         definitions: vec![("res".into(), side.to_string())],

@@ -13,10 +13,12 @@ mod cases;
 mod effort;
 #[path = "../common/median.rs"]
 mod median;
+#[path = "../common/rates.rs"]
 mod rates;
 #[path = "../common/table.rs"]
 mod table;
-mod threads;
+#[path = "../common/turns.rs"]
+mod turns;
 
 use std::error::Error;
 use std::num::NonZeroUsize;
@@ -58,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         println!("{}", case.labels().join(", "));
         let renders = [case.render(ONE)?, case.render(TWO)?];
-        let [one, two] = threads::in_turns(&renders, effort);
+        let [one, two] = turns::in_turns(&renders, effort);
         let driver = batches::DRIVER_EXPONENT;
         table.push(row(&case, ONE, driver, &one, None));
         let speedup = (median_ratio(&two, &one), "1 thread".to_owned());

@@ -1,4 +1,4 @@
-//! The driver on one thread and on two, in turns.
+//! Two renders in turns.
 
 use cohort::{Render, StopFlag};
 
