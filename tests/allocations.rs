@@ -1,6 +1,5 @@
 //! After its first batch, a thread traces without asking for memory.
 
-use std::alloc::System;
 use std::error::Error;
 use std::sync::Arc;
 
@@ -11,15 +10,11 @@ use cohort::scene::{LoadOptions, Scene};
 use cohort::spectrum::{Rgb, Spectral};
 use cohort::transport::{TileJob, TraceBatches, Tracer};
 use cohort::walk::{StrategyKind, StrategyOptions};
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
-/// Counts every allocation of this program, but for those inside Embree.
-#[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
-
-/// Not under the test harness, whose own thread allocates beside.
-fn main() -> Result<(), Box<dyn Error>> {
-    // Once: the threads that make the mesh put their own things in order afterwards.
+/// Counts the allocations of this thread, but for those inside Embree: threads that made the mesh, and that of the test harness, put
+/// their own things in order beside.
+#[test]
+fn a_thread_traces_without_asking_for_memory() -> Result<(), Box<dyn Error>> {
     let scene = Arc::new(Scene::built_in(&LoadOptions {
         definitions: vec![("res".into(), "32".into())],
         ..LoadOptions::default()
@@ -52,10 +47,9 @@ fn main() -> Result<(), Box<dyn Error>> {
                         first_sample: u64::from(pass) * 16,
                         samples: 16,
                     };
-                    let region = Region::new(ALLOCATOR);
-                    tracer.trace(render.engine(), &job, &mut film.tiles_mut()[0]);
-                    let change = region.change();
-                    allocations.push(change.allocations + change.reallocations);
+                    let tile = &mut film.tiles_mut()[0];
+                    let trace = || tracer.trace(render.engine(), &job, tile);
+                    allocations.push(allocation_counter::measure(trace).count_total);
                 }
                 println!("{kind}, {sampler}: {allocations:?}");
                 assert!(allocations[0] > 0, "nothing was counted");
