@@ -28,9 +28,6 @@ impl ExpectedCount {
     /// be reached and the weight of its children is finite.
     pub const SMALLEST: Self = Self(1);
 
-    /// One child, for certain.
-    pub const ONE: Self = Self(ONE);
-
     /// The largest expected count, 1024: it protects the memory from a particle that wants millions of children.
     pub const LARGEST: Self = Self(1024 * ONE);
 

@@ -87,8 +87,7 @@ impl Offspring {
         random: &mut RandomStream,
     ) {
         let children: ExpectedCount = self.expected.iter().copied().sum();
-        let children = (children.whole() as usize + 1).max(self.expected.len());
-        make_room(&mut self.children, children);
+        make_room(&mut self.children, children.whole() as usize + 1);
         rounding.draw(&self.expected, population, random, &mut self.children);
     }
 }

@@ -129,33 +129,13 @@ fn independently(
     random: &mut RandomStream,
     children: &mut Vec<Child>,
 ) {
-    let mut round = |parent: u32, nu: ExpectedCount| {
-        nu.round(|| match population.points {
+    for (parent, &nu) in (0..).zip(nu) {
+        let count = nu.round(|| match population.points {
             Some(points) => decision(points[parent as usize], population.depth, random),
             None => random.bits(),
-        })
-    };
-    if nu.iter().any(|&nu| nu > ExpectedCount::ONE) {
-        for (parent, &nu) in (0..).zip(nu) {
-            bear(children, parent, nu, round(parent, nu));
-        }
-        return;
+        });
+        bear(children, parent, nu, count);
     }
-    // One child at the most: all are written, and those that are not born are written over. Who survives cannot be foreseen.
-    let nobody = Child {
-        parent: 0,
-        weight: 0.0,
-    };
-    children.resize(nu.len(), nobody);
-    let mut born = 0;
-    for (parent, &nu) in (0..).zip(nu) {
-        children[born] = Child {
-            parent,
-            weight: nu.child_weight(),
-        };
-        born += round(parent, nu) as usize;
-    }
-    children.truncate(born);
 }
 
 /// How an expected count is divided between certainty and the points.
