@@ -19,5 +19,6 @@ for scene in scenes/gallery/*.xml; do
         | awk -v name="$name" '
             { effect = substr($0, 1, 21); state = substr($0, 23, 2); cost = substr($0, 28, 22) }
             { sub(/ +$/, "", effect); sub(/ +$/, "", cost) }
-            state == "on" || effect == "all of them" { print "| `" name "` | " effect " | " cost " |" }'
+            effect == "effect" { in_table = 1 }
+            in_table && (state == "on" || effect == "all of them") { print "| `" name "` | " effect " | " cost " |" }'
 done
