@@ -40,7 +40,8 @@ impl AttributeTexture {
         })
     }
 
-    /// Nothing where the mesh does not have the attribute: such scenes are refused when they are loaded. The mean of `value` at the corners of the triangle where a point lies, weighted by how near they are.
+    /// The mean of `value` at the corners of the triangle where a point lies, weighted by how near they are. Nothing where the mesh does
+    /// not have the attribute: such scenes are refused when they are loaded.
     fn interpolated<T>(
         &self,
         point: &SurfaceParameters,
