@@ -78,6 +78,51 @@ fn groups_call_for_instancing_where_they_are_shown() {
     assert!(said.contains(&format!("\n  {pair}\n")), "{said}");
 }
 
+/// A bsdf that two meshes share is a texture on the one that says different things of its vertices, and a colour on the other.
+#[test]
+fn mesh_attributes_are_textures_where_they_vary() {
+    let mesh = |red: [f32; 3]| {
+        let [a, b, c] = red;
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             property float r\nproperty float g\nproperty float b\nelement face 1\n\
+             property list uchar int vertex_indices\nend_header\n\
+             0 0 0 {a} 0.3 0.1\n1 0 0 {b} 0.3 0.1\n0 1 0 {c} 0.3 0.1\n3 0 1 2\n"
+        )
+    };
+    let shape = |name: &str| {
+        format!(
+            r#"<shape type="ply"><string name="filename" value="{name}.ply"/><ref id="paint"/></shape>"#
+        )
+    };
+    let paint = r#"<bsdf type="diffuse" id="paint"><texture type="mesh_attribute" name="reflectance"><string name="name" value="vertex_color"/></texture></bsdf>"#;
+    let sphere = r#"<shape type="sphere"><bsdf type="diffuse"/></shape>"#;
+    let folder = Folder::new();
+    folder.write("flat.ply", mesh([0.5; 3]));
+    folder.write("varied.ply", mesh([0.5, 0.6, 0.5]));
+    let explain = |shapes: &[&str]| {
+        let shapes: String = shapes.iter().map(|name| shape(name)).collect();
+        folder.write(
+            "scene.xml",
+            with(SCENE, sphere, &format!("{paint}{shapes}")),
+        );
+        let output = folder.cohort(["explain", "scene.xml"]).output().unwrap();
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let said = explain(&["flat", "flat"]);
+    assert_eq!(row(&said, "textures"), "textures off");
+    assert!(said.contains("engine: matte, "), "{said}");
+    for shapes in [["flat", "varied"], ["varied", "flat"]] {
+        let said = explain(&shapes);
+        assert_eq!(
+            row(&said, "textures"),
+            "textures on bsdf `diffuse` called `paint` (scene.xml:8)"
+        );
+        assert!(said.contains("engine: general, "), "{said}");
+    }
+}
+
 #[test]
 fn definitions_decide() {
     let alpha = r#"<bsdf type="roughconductor"><float name="alpha" value="$alpha"/></bsdf>"#;

@@ -4,14 +4,16 @@
 //! what it masks, an interface without a change of index is nothing, a surface of roughness 0 is the smooth one, an image of
 //! one colour is that colour, and a flat spectrum is a number. So whatever is left in a [`Scene`] counts.
 
+use std::collections::HashSet;
 use std::fmt;
+use std::hash::Hash;
 
 use super::bsdfs::Material;
 use super::source::Source;
 use super::{Camera, Emitter, Scene};
 
 /// Something that light does in some scenes only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Effect {
     /// Smooth metals.
     Mirrors,
@@ -140,13 +142,13 @@ impl Effects {
         let not_matte = materials.filter(|(material, _)| !material.is_matte());
         let emitters = scene.emitters.iter().zip(&scene.sources.emitters);
         let textured = emitters.filter(|(emitter, _)| emitter.is_textured_area());
+        let not_matte = not_matte
+            .filter_map(|(_, source)| source.clone())
+            .chain(textured.map(|(_, source)| source.clone()))
+            .chain(scene.sources.groups.iter().cloned());
         Self {
-            calls,
-            not_matte: not_matte
-                .filter_map(|(_, source)| source.clone())
-                .chain(textured.map(|(_, source)| source.clone()))
-                .chain(scene.sources.groups.iter().cloned())
-                .collect(),
+            calls: each_once(calls),
+            not_matte: each_once(not_matte.collect()),
         }
     }
 
@@ -179,6 +181,13 @@ impl Scene {
             && self.materials.iter().all(Material::is_matte)
             && !self.emitters.iter().any(Emitter::is_textured_area)
     }
+}
+
+/// A bsdf of the file can be several materials, by what the meshes of its shapes say.
+fn each_once<T: Clone + Eq + Hash>(mut all: Vec<T>) -> Vec<T> {
+    let mut seen = HashSet::new();
+    all.retain(|one| seen.insert(one.clone()));
+    all
 }
 
 fn of_emitter(emitter: &Emitter) -> &'static [Effect] {

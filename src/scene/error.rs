@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::mesh::MeshError;
 
 /// A place in a scene file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Location {
     /// The file as it was opened, or the name of a built-in scene in angle brackets.
     pub file: Arc<Path>,

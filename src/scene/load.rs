@@ -84,8 +84,9 @@ pub(super) struct Loader<'d> {
     group_sources: Vec<Source>,
     material_sources: Vec<Option<Source>>,
     emitter_sources: Vec<Source>,
-    /// Materials by their object in the file, so that a bsdf that many shapes refer to is loaded once.
-    known_materials: HashMap<*const Object, MaterialId>,
+    /// Materials by their object in the file, so that a bsdf that many shapes refer to is loaded once, or where it asks for attributes
+    /// that are the same everywhere on some meshes, once for those.
+    known_materials: HashMap<*const Object, Vec<MaterialId>>,
     /// Groups by their object in the file.
     known_groups: HashMap<*const Object, ShapeGroupId>,
     /// What shapes without a bsdf are made of: those that do not emit, and those that do.
@@ -127,6 +128,7 @@ impl<'d> Loader<'d> {
             sampler,
         } = sensors::load(&sensor.object)?;
         let instances = self.shapes_and_instances(&root.children(Class::Shape))?;
+        self.textures.lie_on(HashMap::new());
         for child in root.children(Class::Bsdf) {
             self.check_material(&child.object)?;
         }
@@ -182,13 +184,20 @@ impl<'d> Loader<'d> {
         Ok(())
     }
 
+    /// The material that the bsdf `object` is on the shape on which [textures lie](TextureLoader::lie_on) now.
     fn material(&mut self, object: &Arc<Object>) -> Result<MaterialId, SceneError> {
-        if let Some(&known) = self.known_materials.get(&Arc::as_ptr(object)) {
+        let key = Arc::as_ptr(object);
+        let fits = |id: &&MaterialId| {
+            let mut asked = self.materials[id.index()].attributes().iter();
+            asked.all(|asked| self.textures.still_says(asked))
+        };
+        let mut known = self.known_materials.get(&key).into_iter().flatten();
+        if let Some(&known) = known.find(fits) {
             return Ok(known);
         }
         let material = bsdfs::load(object, &mut self.textures)?;
         let id = self.add_material(material, Some(Source::of(object)));
-        self.known_materials.insert(Arc::as_ptr(object), id);
+        self.known_materials.entry(key).or_default().push(id);
         Ok(id)
     }
 

@@ -6,7 +6,7 @@ use super::error::Location;
 use super::xml::{Class, Object};
 
 /// An object of the scene file, as a person finds it there.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Source {
     /// What kind of thing it is.
     pub class: Class,

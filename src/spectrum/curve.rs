@@ -163,18 +163,32 @@ impl SpectralCurve {
     /// # Errors
     /// A component that is negative, greater than 1e30 or not a number.
     pub fn rgb_unbounded(rgb: [f32; 3]) -> Result<Self, CurveError> {
-        for (channel, value) in rgb.into_iter().enumerate() {
-            check_emission(value, Place::Channel(channel))?;
+        Self::rgb_unbounded_times(rgb, 1.0)
+    }
+
+    /// [`Self::rgb_unbounded`] of `rgb`, multiplied by `factor`.
+    ///
+    /// # Errors
+    /// A component that is negative, greater than 1e30 or not a number, before or after.
+    pub fn rgb_unbounded_times(rgb: [f32; 3], factor: f32) -> Result<Self, CurveError> {
+        let product = rgb.map(|channel| channel * factor);
+        for colour in [rgb, product] {
+            for (channel, value) in colour.into_iter().enumerate() {
+                check_emission(value, Place::Channel(channel))?;
+            }
         }
         let scale = rgb.into_iter().fold(1.0, f32::max);
-        let shape = match rgb {
+        let shape = match product {
             [r, g, b] if r == g && g == b => Shape::Constant(r),
             _ => Shape::ScaledSigmoid {
                 colour: SigmoidPolynomial::fit(rgb.map(|channel| channel / scale)),
-                scale,
+                scale: scale * factor,
             },
         };
-        Ok(Self { rgb, shape })
+        Ok(Self {
+            rgb: product,
+            shape,
+        })
     }
 
     /// A measured emission whose linear sRGB colour is that of a reflectance, the one under D65, without the upper limit.

@@ -13,7 +13,7 @@ use crate::sampling::Frame;
 use crate::scene::effects::Effect;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
-use crate::scene::textures::{SpectrumTexture, TextureLoader};
+use crate::scene::textures::{AskedAttribute, SpectrumTexture, TextureLoader};
 use crate::scene::xml::Object;
 use crate::spectrum::{Colour, SpectralCurve};
 
@@ -24,7 +24,7 @@ pub struct Material {
     needs_parameters: bool,
     is_mixed: bool,
     /// The mesh attributes that it asks for.
-    attributes: Vec<String>,
+    attributes: Vec<AskedAttribute>,
 }
 
 /// A point of a surface as a path sees it.
@@ -59,8 +59,8 @@ impl Material {
         }
     }
 
-    /// The same material, which asks for the mesh attributes of these names.
-    pub(super) fn with_attributes(self, attributes: Vec<String>) -> Self {
+    /// The same material, which asks for these mesh attributes.
+    pub(super) fn with_attributes(self, attributes: Vec<AskedAttribute>) -> Self {
         Self { attributes, ..self }
     }
 
@@ -81,9 +81,9 @@ impl Material {
         self.needs_parameters
     }
 
-    /// The names of the mesh attributes that it asks for.
-    pub(in crate::scene) fn attributes(&self) -> Vec<&str> {
-        self.attributes.iter().map(String::as_str).collect()
+    /// The mesh attributes that it asks for.
+    pub(in crate::scene) fn attributes(&self) -> &[AskedAttribute] {
+        &self.attributes
     }
 
     /// Whether one of several materials is drawn at every point.

@@ -12,7 +12,7 @@ impl Material {
         if !self.effects().contains(&effect) {
             return self;
         }
-        let attributes = self.attributes().into_iter().map(str::to_owned).collect();
+        let attributes = self.attributes().to_vec();
         Self::new(self.into_tree().without(effect)).with_attributes(attributes)
     }
 }

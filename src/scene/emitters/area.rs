@@ -14,7 +14,7 @@ use crate::sampling::SolidAnglePdf;
 use crate::scene::error::SceneError;
 use crate::scene::load::Loader;
 use crate::scene::shapes::{Geometry, SurfaceParameters, SurfacePoint};
-use crate::scene::textures::{SpectrumTexture, luminance};
+use crate::scene::textures::{AskedAttribute, SpectrumTexture, luminance};
 use crate::scene::xml::Object;
 use crate::scene::{Shape, ShapeId};
 use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
@@ -29,8 +29,8 @@ pub struct AreaLight {
     pub shape: ShapeId,
     /// The radiance it emits.
     pub radiance: SpectrumTexture,
-    /// The names of the mesh attributes that the radiance asks for.
-    attributes: Vec<String>,
+    /// The mesh attributes that the radiance asks for.
+    attributes: Vec<AskedAttribute>,
 }
 
 impl AreaLight {
@@ -52,8 +52,8 @@ impl AreaLight {
         })
     }
 
-    /// The names of the mesh attributes that it asks for.
-    pub(in crate::scene) fn attributes(&self) -> &[String] {
+    /// The mesh attributes that it asks for.
+    pub(in crate::scene) fn attributes(&self) -> &[AskedAttribute] {
         &self.attributes
     }
 

@@ -8,6 +8,7 @@ use crate::scene::emitters::{self, Emitter};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::{self, Geometry, Instance, Shape, ShapeGroup};
 use crate::scene::source::Source;
+use crate::scene::textures::AskedAttribute;
 use crate::scene::xml::{Child, Class, Object};
 use crate::scene::{ShapeGroupId, ShapeId};
 use crate::spectrum::MAX_EMISSION;
@@ -61,9 +62,10 @@ impl Loader<'_> {
     /// Refuses a shape that is wrong, though nobody sees it and so it is not kept.
     pub fn check_shape(&mut self, object: &Object) -> Result<(), SceneError> {
         let mut geometry = shapes::load(object, self)?;
+        self.textures.lie_on(geometry.constant_attributes());
         if let Some(child) = object.child(Class::Bsdf)? {
             let material = bsdfs::load(&child.object, &mut self.textures)?;
-            keep_attributes(object, &mut geometry, &material.attributes(), &[])?;
+            keep_attributes(object, &mut geometry, material.attributes(), &[])?;
         }
         object.finish()
     }
@@ -71,6 +73,7 @@ impl Loader<'_> {
     /// Loads a shape.
     pub fn shape(&mut self, object: &Object) -> Result<(), SceneError> {
         let mut geometry = shapes::load(object, self)?;
+        self.textures.lie_on(geometry.constant_attributes());
         let light = object.child(Class::Emitter)?;
         let material = match object.child(Class::Bsdf)? {
             Some(child) => self.material(&child.object)?,
@@ -86,12 +89,7 @@ impl Loader<'_> {
             Some((light, _)) => light.attributes(),
             None => &[],
         };
-        keep_attributes(
-            object,
-            &mut geometry,
-            &material_attributes,
-            light_attributes,
-        )?;
+        keep_attributes(object, &mut geometry, material_attributes, light_attributes)?;
         let emitter = match light {
             Some((light, child)) => {
                 if let Geometry::Triangles(mesh) = &mut geometry
@@ -117,17 +115,18 @@ impl Loader<'_> {
 fn keep_attributes(
     object: &Object,
     geometry: &mut Geometry,
-    of_material: &[&str],
-    of_light: &[String],
+    of_material: &[AskedAttribute],
+    of_light: &[AskedAttribute],
 ) -> Result<(), SceneError> {
-    let names = of_light.iter().map(String::as_str);
-    let names: Vec<&str> = of_material.iter().copied().chain(names).collect();
+    let asked = of_material.iter().chain(of_light);
+    let names: Vec<&str> = asked.map(|asked| asked.name.as_str()).collect();
+    let is_of_material = |name: &str| of_material.iter().any(|asked| asked.name == name);
     let missing = match geometry {
         Geometry::Triangles(mesh) => mesh.keep_attributes(&names).err(),
         _ => names.first().copied(),
     };
     if let Some(missing) = missing {
-        let who = if of_material.contains(&missing) {
+        let who = if is_of_material(missing) {
             "bsdf"
         } else {
             "light"
@@ -140,7 +139,7 @@ fn keep_attributes(
         return Ok(());
     };
     for attribute in mesh.named_attributes() {
-        let (greatest, range) = if of_material.contains(&attribute.name.as_str()) {
+        let (greatest, range) = if is_of_material(&attribute.name) {
             (1.0, "colours are linear sRGB from 0 to 1")
         } else {
             (

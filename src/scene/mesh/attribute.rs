@@ -25,6 +25,14 @@ pub enum AttributeValues {
 }
 
 impl MeshAttribute {
+    /// The value at all points, if there is one; a number has it in all channels.
+    pub fn constant(&self) -> Option<[f32; 3]> {
+        match &self.values {
+            AttributeValues::Numbers(numbers) => only(numbers).map(|number| [number; 3]),
+            AttributeValues::Colours(colours) => only(colours.all_rgb()),
+        }
+    }
+
     /// The first colour component that is not in `range`.
     pub fn colour_outside(&self, range: RangeInclusive<f32>) -> Option<f32> {
         match &self.values {
@@ -35,4 +43,10 @@ impl MeshAttribute {
             }
         }
     }
+}
+
+/// What all `values` are, if they are the same.
+fn only<T: Copy + PartialEq>(values: &[T]) -> Option<T> {
+    let (&first, rest) = values.split_first()?;
+    rest.iter().all(|&value| value == first).then_some(first)
 }

@@ -28,6 +28,8 @@ pub use shape_group::ShapeGroup;
 pub use sphere::Sphere;
 pub use triangles::{TriangleAttributes, Triangles};
 
+use std::collections::HashMap;
+
 use glam::{DMat3, DMat4, Vec3};
 
 use self::extent::FARTHEST;
@@ -248,6 +250,14 @@ impl Geometry {
             Self::Sphere(shape) => shape.sample(reference, u),
             Self::Disk(shape) => shape.sample(reference, u),
             Self::Cylinder(shape) => shape.sample(reference, u),
+        }
+    }
+
+    /// What it says everywhere of its mesh attributes that are the same at all points, by name.
+    pub(super) fn constant_attributes(&self) -> HashMap<String, [f32; 3]> {
+        match self {
+            Self::Triangles(mesh) => mesh.constant_attributes(),
+            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) => HashMap::new(),
         }
     }
 

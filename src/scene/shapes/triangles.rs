@@ -1,5 +1,6 @@
 //! Triangle meshes in world space, as rays and lights need them.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
@@ -169,6 +170,15 @@ impl Triangles {
             Some(missing) => Err(missing),
             None => Ok(()),
         }
+    }
+
+    /// What it says everywhere of the named attributes that are the same at all points, by name.
+    pub(super) fn constant_attributes(&self) -> HashMap<String, [f32; 3]> {
+        let named = self.attributes.named.iter();
+        let constant = named.filter_map(|attribute| Some((attribute, attribute.constant()?)));
+        constant
+            .map(|(attribute, constant)| (attribute.name.clone(), constant))
+            .collect()
     }
 
     /// The named attributes.

@@ -8,7 +8,8 @@ use glam::{Affine2, DMat4, Mat2, Vec2};
 
 use super::bitmap::Texels;
 use super::{
-    AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture, luminance,
+    AskedAttribute, AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture,
+    luminance,
 };
 use crate::scene::error::SceneError;
 use crate::scene::image_file::{ImageFile, ImageFileError};
@@ -21,8 +22,10 @@ pub(in crate::scene) struct TextureLoader<'d> {
     document: &'d Document,
     /// Images by file, by whether they are raw, and by what they are images of.
     images: HashMap<(PathBuf, bool, Quantity), Arc<Texels>>,
+    /// The attributes of the mesh on which the textures lie that are the same everywhere.
+    constants: HashMap<String, [f32; 3]>,
     /// Mesh attributes that textures asked for since they were [taken](Self::take_attributes).
-    attributes: Vec<String>,
+    attributes: Vec<AskedAttribute>,
 }
 
 /// What a texture turned out to be.
@@ -37,12 +40,23 @@ impl<'d> TextureLoader<'d> {
         Self {
             document,
             images: HashMap::new(),
+            constants: HashMap::new(),
             attributes: Vec::new(),
         }
     }
 
-    /// The names of the mesh attributes that the textures loaded since the last call ask for.
-    pub fn take_attributes(&mut self) -> Vec<String> {
+    /// The textures loaded from now on lie on a mesh whose attributes `constants` are the same everywhere.
+    pub fn lie_on(&mut self, constants: HashMap<String, [f32; 3]>) {
+        self.constants = constants;
+    }
+
+    /// Whether a texture that asks for `asked` would be told the same now.
+    pub fn still_says(&self, asked: &AskedAttribute) -> bool {
+        self.constants.get(&asked.name) == asked.constant.as_ref()
+    }
+
+    /// The mesh attributes that the textures loaded since the last call ask for.
+    pub fn take_attributes(&mut self) -> Vec<AskedAttribute> {
         std::mem::take(&mut self.attributes)
     }
 
@@ -163,8 +177,17 @@ impl<'d> TextureLoader<'d> {
             }
             "mesh_attribute" => {
                 let attribute = AttributeTexture::load(object)?;
-                self.attributes.push(attribute.name.clone());
-                Ok(Loaded::Pattern(Pattern::Attribute(attribute)))
+                let constant = self.constants.get(&attribute.name).copied();
+                self.attributes.push(AskedAttribute {
+                    name: attribute.name.clone(),
+                    constant,
+                });
+                // What is no colour, such as a number below 0, stays a texture.
+                let uniform = constant.and_then(|constant| attribute.uniform(constant).ok());
+                Ok(match uniform {
+                    Some(curve) => Loaded::Uniform(curve),
+                    None => Loaded::Pattern(Pattern::Attribute(attribute)),
+                })
             }
             _ => Err(object.unsupported(&["bitmap", "checkerboard", "mesh_attribute"])),
         }

@@ -6,14 +6,22 @@
 //! | `scale` | float | factor | 1 |
 //!
 //! Properties `NAME_x`, or `NAME_x` to `NAME_z`, are the attribute NAME, `NAME_r` to `NAME_b` are `NAME_color`. Colours are linear sRGB in
-//! [0, 1]. By wavelength every one is a smooth spectrum.
+//! [0, 1]. By wavelength every one is a smooth spectrum. Where the mesh says the same everywhere, that is a colour and no texture.
 
 use super::luminance;
 use crate::scene::error::SceneError;
 use crate::scene::mesh::{AttributeValues, MeshAttribute};
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::xml::Object;
-use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::spectrum::{Colour, CurveError, SpectralCurve, SpectrumArithmetic};
+
+/// An attribute that textures ask for, on the mesh where they lie.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::scene) struct AskedAttribute {
+    pub name: String,
+    /// What the mesh says everywhere, if that is the same; a number is one in all channels.
+    pub constant: Option<[f32; 3]>,
+}
 
 /// What a mesh says, as a texture.
 #[derive(Clone, Debug)]
@@ -38,6 +46,11 @@ impl AttributeTexture {
             name: name.to_owned(),
             scale,
         })
+    }
+
+    /// What it shows where the mesh says `constant` everywhere.
+    pub(super) fn uniform(&self, constant: [f32; 3]) -> Result<SpectralCurve, CurveError> {
+        SpectralCurve::rgb_unbounded_times(constant, self.scale)
     }
 
     /// The mean of `value` at the corners of the triangle where a point lies, weighted by how near they are. Nothing where the mesh does

@@ -11,6 +11,7 @@ mod mesh_attribute;
 pub use bitmap::Bitmap;
 pub use checkerboard::Checkerboard;
 pub(super) use loader::TextureLoader;
+pub(super) use mesh_attribute::AskedAttribute;
 pub use mesh_attribute::AttributeTexture;
 
 use super::shapes::SurfaceParameters;

@@ -9,7 +9,7 @@ use super::value::{SpectrumValue, Value};
 use crate::scene::error::{Location, SceneError, list};
 
 /// What kind of thing an object is, told by its element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
     /// `<scene>`
     Scene,

@@ -234,3 +234,21 @@ proptest! {
         prop_assert!(values.iter().all(|v| (0.0..=1.0).contains(v)), "{reflectance:?}");
     }
 }
+
+/// A factor leaves the form of the spectrum as it is; a colour that is as bright from the start has another.
+#[test]
+fn a_multiple_of_a_colour_has_its_spectrum() {
+    let rgb = [0.9, 0.1, 0.2];
+    let once = SpectralCurve::rgb_unbounded(rgb).unwrap();
+    let multiple = SpectralCurve::rgb_unbounded_times(rgb, 0.5).unwrap();
+    assert_eq!(multiple.rgb(), [0.45, 0.05, 0.1]);
+    let at = Wavelengths::at([420.0, 500.0, 580.0, 660.0]);
+    let (once, multiple) = (once.evaluate(&at), multiple.evaluate(&at));
+    for (once, multiple) in once.0.into_iter().zip(multiple.0) {
+        assert!((0.5 * once - multiple).abs() < 1e-6, "{once} {multiple}");
+    }
+    let grey = SpectralCurve::rgb_unbounded_times([0.25; 3], 2.0).unwrap();
+    assert!(grey.is_constant() && grey.rgb() == [0.5; 3]);
+    assert!(SpectralCurve::rgb_unbounded_times([-1.0; 3], -1.0).is_err());
+    assert!(SpectralCurve::rgb_unbounded_times(rgb, -1.0).is_err());
+}
