@@ -7,7 +7,8 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
-use image::{ColorType, DynamicImage, ImageFormat, ImageReader, Limits};
+use image::codecs::hdr::HdrDecoder;
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits};
 
 use super::ImageSize;
 use super::error::SceneError;
@@ -15,6 +16,9 @@ use super::xml::{Document, Object};
 
 /// The most pixels of an image: more would be gigabytes.
 const MAX_PIXELS: u64 = 1 << 28;
+
+/// How Radiance files begin.
+const RADIANCE: &[u8] = b"#?";
 
 /// An image as its file holds it.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,19 +163,24 @@ impl ImageFile {
     fn decode(file: BufReader<File>, start: &[u8]) -> Result<Self, String> {
         const UNKNOWN: &str =
             "it is not an image of a known format; known are PNG, JPEG, BMP, HDR, OpenEXR and PFM";
-        let format = image::guess_format(start).map_err(|_| UNKNOWN)?;
+        let format = if start.starts_with(RADIANCE) {
+            ImageFormat::Hdr
+        } else {
+            image::guess_format(start).map_err(|_| UNKNOWN)?
+        };
         let encoding = match format {
             ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Bmp => Encoding::Srgb,
             ImageFormat::Hdr => Encoding::Linear,
             _ => return Err(UNKNOWN.to_owned()),
         };
-        let mut reader = ImageReader::with_format(file, format);
-        let mut limits = Limits::default();
-        limits.max_image_width = Some(ImageSize::MAX_SIDE);
-        limits.max_image_height = Some(ImageSize::MAX_SIDE);
-        limits.max_alloc = Some(16 * MAX_PIXELS);
-        reader.limits(limits);
-        let image = reader.decode().map_err(|error| error.to_string())?;
+        let decoded = if format == ImageFormat::Hdr {
+            decode_radiance(file)
+        } else {
+            let mut reader = ImageReader::with_format(file, format);
+            reader.limits(limits());
+            reader.decode()
+        };
+        let image = decoded.map_err(|error| error.to_string())?;
         let size = size(image.width().into(), image.height().into())?;
         let channels = match image.color() {
             ColorType::L8 | ColorType::L16 => Channels::Grey,
@@ -186,6 +195,24 @@ impl ImageFile {
             values: values(image, channels),
         })
     }
+}
+
+/// What an image may take.
+fn limits() -> Limits {
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(ImageSize::MAX_SIDE);
+    limits.max_image_height = Some(ImageSize::MAX_SIDE);
+    limits.max_alloc = Some(16 * MAX_PIXELS);
+    limits
+}
+
+/// Reads a Radiance file, whatever program it says has written it: `#?RADIANCE`, `#?RGBE` and others are all about the same.
+fn decode_radiance(file: BufReader<File>) -> ImageResult<DynamicImage> {
+    let mut decoder = HdrDecoder::new_nonstrict(file)?;
+    let mut limits = limits();
+    limits.reserve(decoder.total_bytes())?;
+    decoder.set_limits(limits)?;
+    DynamicImage::from_decoder(decoder)
 }
 
 /// The numbers of a decoded image.

@@ -97,11 +97,16 @@ fn floating_point_files_are_linear() {
     let picture: Vec<f32> = PICTURE.iter().map(|value| 100.0 * value).collect();
     let buffer: ImageBuffer<Rgb<f32>, Vec<f32>> =
         ImageBuffer::from_raw(3, 2, picture.clone()).unwrap();
-    let image = read(&encoded(buffer, ImageFormat::Hdr)).unwrap();
-    assert_eq!((image.size, image.channels), (SIZE, Channels::Rgb));
-    // Eight bits beside a common exponent.
-    assert_close(&image.values, &picture, 0.5);
-    assert_eq!(image.clone().into_linear(), image);
+    let radiance = encoded(buffer, ImageFormat::Hdr);
+    // Mitsuba and others call it so.
+    let rgbe = [b"#?RGBE", &radiance[b"#?RADIANCE".len()..]].concat();
+    for file in [radiance, rgbe] {
+        let image = read(&file).unwrap();
+        assert_eq!((image.size, image.channels), (SIZE, Channels::Rgb));
+        // Eight bits beside a common exponent.
+        assert_close(&image.values, &picture, 0.5);
+        assert_eq!(image.clone().into_linear(), image);
+    }
 
     for (order, bytes) in [
         ("-1.0", f32::to_le_bytes as fn(f32) -> [u8; 4]),
