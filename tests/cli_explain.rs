@@ -61,6 +61,33 @@ fn effects_name_their_objects() {
 }
 
 #[test]
+fn bsdfs_in_bsdfs_are_named_themselves() {
+    let nested = "<bsdf type=\"twosided\">\n<bsdf type=\"bumpmap\">\n<texture type=\"bitmap\"><string name=\"filename\" value=\"heights.pfm\"/></texture>\n\
+        <bsdf type=\"roughplastic\" id=\"coat\"/></bsdf></bsdf>";
+    let folder = Folder::new();
+    folder.write(
+        "scene.xml",
+        with(SCENE, r#"<bsdf type="diffuse"/>"#, nested),
+    );
+    let heights = [b"Pf\n2 1\n-1\n".as_slice(), &[0; 4], &0.5_f32.to_le_bytes()];
+    folder.write("heights.pfm", heights.concat());
+    let output = folder.cohort(["explain", "scene.xml"]).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let said = String::from_utf8(output.stdout).unwrap();
+    let coat = "bsdf `roughplastic` called `coat` (scene.xml:11)";
+    assert_eq!(row(&said, "gloss"), format!("gloss on {coat}"));
+    assert_eq!(row(&said, "coatings"), format!("coatings on {coat}"));
+    assert_eq!(
+        row(&said, "bump and normal maps"),
+        "bump and normal maps on bsdf `bumpmap` (scene.xml:9)"
+    );
+    assert!(
+        said.contains("\n  bsdf `twosided` (scene.xml:8)\n"),
+        "{said}"
+    );
+}
+
+#[test]
 fn groups_call_for_instancing_where_they_are_shown() {
     let group = r#"<shape type="shapegroup" id="pair"><shape type="sphere"><bsdf type="diffuse"/></shape></shape>"#;
     let sphere = r#"<shape type="sphere"><bsdf type="diffuse"/></shape>"#;

@@ -22,7 +22,7 @@ const LISTED: usize = 8;
 ///
 /// Every effect is on or off. What cannot be seen is off, such as a lens of radius 0, an opacity of 1, a roughness of 0, an
 /// index of refraction that does not change, or an image of one colour. Objects that call for an effect are listed with their file
-/// and line; a bsdf stands for those nested in it. Nothing is rendered, unless with --measure.
+/// and line; a bsdf stands for the textures in it. Nothing is rendered, unless with --measure.
 #[derive(Args)]
 pub struct ExplainArgs {
     #[command(flatten)]

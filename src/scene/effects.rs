@@ -118,13 +118,7 @@ pub struct Effects {
 impl Effects {
     /// Those of `scene`.
     pub fn of(scene: &Scene) -> Self {
-        let mut calls = Vec::new();
-        for (material, source) in scene.materials.iter().zip(&scene.sources.materials) {
-            // The material of shapes without a bsdf is diffuse.
-            let Some(source) = source else { continue };
-            let effects = material.effects();
-            calls.extend(effects.into_iter().map(|effect| (effect, source.clone())));
-        }
+        let mut calls: Vec<_> = scene.materials.iter().flat_map(Material::calls).collect();
         for (emitter, source) in scene.emitters.iter().zip(&scene.sources.emitters) {
             let many = (scene.emitters.len() > 1).then_some(Effect::ManyLights);
             let effects = of_emitter(emitter).iter().copied().chain(many);
@@ -138,12 +132,14 @@ impl Effects {
             Camera::Orthographic(_) => Some(Effect::Orthographic),
         };
         calls.extend(of_camera.map(|effect| (effect, scene.sources.sensor.clone())));
-        let materials = scene.materials.iter().zip(&scene.sources.materials);
-        let not_matte = materials.filter(|(material, _)| !material.is_matte());
+        let not_matte = scene
+            .materials
+            .iter()
+            .filter(|material| !material.is_matte());
         let emitters = scene.emitters.iter().zip(&scene.sources.emitters);
         let textured = emitters.filter(|(emitter, _)| emitter.is_textured_area());
         let not_matte = not_matte
-            .filter_map(|(_, source)| source.clone())
+            .filter_map(|material| material.source().cloned())
             .chain(textured.map(|(_, source)| source.clone()))
             .chain(scene.sources.groups.iter().cloned());
         Self {
@@ -183,7 +179,7 @@ impl Scene {
     }
 }
 
-/// A bsdf of the file can be several materials, by what the meshes of its shapes say.
+/// A bsdf can be both sides of a surface, stand in several others, and be several materials, by what the meshes of its shapes say.
 fn each_once<T: Clone + Eq + Hash>(mut all: Vec<T>) -> Vec<T> {
     let mut seen = HashSet::new();
     all.retain(|one| seen.insert(one.clone()));

@@ -80,9 +80,8 @@ pub(super) struct Loader<'d> {
     groups: Vec<ShapeGroup>,
     materials: Vec<Material>,
     emitters: Vec<Emitter>,
-    /// Where the groups come from, the materials, and the emitters.
+    /// Where the groups come from, and the emitters.
     group_sources: Vec<Source>,
-    material_sources: Vec<Option<Source>>,
     emitter_sources: Vec<Source>,
     /// Materials by their object in the file, so that a bsdf that many shapes refer to is loaded once, or where it asks for attributes
     /// that are the same everywhere on some meshes, once for those.
@@ -103,7 +102,6 @@ impl<'d> Loader<'d> {
             materials: Vec::new(),
             emitters: Vec::new(),
             group_sources: Vec::new(),
-            material_sources: Vec::new(),
             emitter_sources: Vec::new(),
             known_materials: HashMap::new(),
             known_groups: HashMap::new(),
@@ -153,7 +151,6 @@ impl<'d> Loader<'d> {
             sampler,
             sources: Sources {
                 groups: self.group_sources,
-                materials: self.material_sources,
                 emitters: self.emitter_sources,
                 sensor: Source::of(&sensor.object),
             },
@@ -196,14 +193,13 @@ impl<'d> Loader<'d> {
             return Ok(known);
         }
         let material = bsdfs::load(object, &mut self.textures)?;
-        let id = self.add_material(material, Some(Source::of(object)));
+        let id = self.add_material(material);
         self.known_materials.entry(key).or_default().push(id);
         Ok(id)
     }
 
-    fn add_material(&mut self, material: Material, source: Option<Source>) -> MaterialId {
+    fn add_material(&mut self, material: Material) -> MaterialId {
         self.materials.push(material);
-        self.material_sources.push(source);
         MaterialId(self.materials.len() as u32 - 1)
     }
 
@@ -217,7 +213,7 @@ impl<'d> Loader<'d> {
             } else {
                 Material::default()
             };
-            let id = self.add_material(material, None);
+            let id = self.add_material(material);
             self.default_materials[usize::from(is_light)] = Some(id);
             id
         })

@@ -18,11 +18,9 @@ pub struct Source {
     pub location: Location,
 }
 
-/// The objects that materials, groups of shapes, emitters and the camera of a scene come from.
+/// The objects that groups of shapes, emitters and the camera of a scene come from; materials know theirs.
 #[derive(Clone, Debug)]
 pub struct Sources {
-    /// By material; none where a shape has no bsdf.
-    pub materials: Vec<Option<Source>>,
     /// By group.
     pub groups: Vec<Source>,
     /// By emitter.

@@ -7,6 +7,7 @@
 
 use super::Bsdf;
 use super::material::SeenPoint;
+use super::stated::Stated;
 use super::surface::Surface;
 use crate::scene::error::SceneError;
 use crate::scene::textures::{FloatTexture, TextureLoader};
@@ -17,12 +18,12 @@ use crate::spectrum::Colour;
 #[derive(Clone, Debug)]
 pub(super) struct Blend {
     pub weight: FloatTexture,
-    pub surfaces: [Surface; 2],
+    pub surfaces: [Stated; 2],
 }
 
 impl Blend {
     /// The mixture, or the only one of the two that matters.
-    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Surface, SceneError> {
+    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Stated, SceneError> {
         let [first, second] = object.children(Class::Bsdf)[..] else {
             return Err(object.error("a `blendbsdf` contains two bsdfs"));
         };
@@ -44,7 +45,7 @@ impl Blend {
                 let [_, second] = surfaces;
                 second
             }
-            weight => Surface::Blend(Box::new(Self { weight, surfaces })),
+            weight => Stated::by(object, Surface::Blend(Box::new(Self { weight, surfaces }))),
         })
     }
 

@@ -12,6 +12,7 @@ use glam::Vec3;
 use super::Bsdf;
 use super::material::SeenPoint;
 use super::perturbed::Tilted;
+use super::stated::Stated;
 use super::surface::Surface;
 use crate::scene::error::SceneError;
 use crate::scene::textures::{Bitmap, TextureLoader};
@@ -28,7 +29,7 @@ pub(super) struct BumpMap {
 
 impl BumpMap {
     /// The bumpy surface; the nested one where the height is the same everywhere.
-    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Surface, SceneError> {
+    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Stated, SceneError> {
         let [heights] = object.children(Class::Texture)[..] else {
             return Err(object.error("a `bumpmap` contains one texture, its height map"));
         };
@@ -41,7 +42,7 @@ impl BumpMap {
         Ok(if map.scale == 0.0 || map.heights.uniform().is_some() {
             map.nested.surface
         } else {
-            Surface::BumpMap(Box::new(map))
+            Stated::by(object, Surface::BumpMap(Box::new(map)))
         })
     }
 

@@ -1,22 +1,47 @@
 //! The effects that materials call for.
 
+use super::stated::Stated;
 use super::surface::Surface;
 use crate::scene::effects::Effect;
+use crate::scene::source::Source;
 
 impl Surface {
-    /// What this surface and those that it contains call for, each once.
+    /// What this surface and those that it contains call for.
     pub(super) fn effects(&self) -> Vec<Effect> {
-        let mut effects = Vec::new();
-        self.collect_effects(&mut |effect, is_called_for| {
-            if is_called_for && !effects.contains(&effect) {
-                effects.push(effect);
-            }
-        });
-        effects
+        let nested = self.nested().into_iter();
+        let of_nested = nested.flat_map(|nested| nested.effects());
+        self.own_effects().into_iter().chain(of_nested).collect()
     }
 
-    /// Tells `call` of effects and whether they are called for.
-    fn collect_effects(&self, call: &mut dyn FnMut(Effect, bool)) {
+    /// The same, each with the object that calls for it; this surface is stated by `source`.
+    pub(super) fn calls(&self, source: &Source) -> Vec<(Effect, Source)> {
+        let own = self.own_effects().into_iter();
+        let nested = self.nested().into_iter();
+        own.map(|effect| (effect, source.clone()))
+            .chain(nested.flat_map(|nested| nested.calls(&nested.source)))
+            .collect()
+    }
+
+    /// The surfaces that it contains.
+    fn nested(&self) -> Vec<&Stated> {
+        match self {
+            Self::TwoSided(sides) => vec![&sides.front, &sides.back],
+            Self::Mask(mask) => vec![&mask.surface],
+            Self::Blend(blend) => blend.surfaces.iter().collect(),
+            Self::BumpMap(map) => vec![&map.nested.surface],
+            Self::NormalMap(map) => vec![&map.nested.surface],
+            _ => Vec::new(),
+        }
+    }
+
+    /// What the surface itself calls for.
+    fn own_effects(&self) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        let mut call = |effect, is_called_for| {
+            if is_called_for {
+                effects.push(effect);
+            }
+        };
         match self {
             Self::Diffuse(material) => call(Effect::Textures, material.reflectance.varies()),
             Self::Conductor(material) => {
@@ -77,30 +102,17 @@ impl Surface {
                 call(Effect::Textures, material.varies());
             }
             Self::Null => call(Effect::Opacity, true),
-            Self::TwoSided(sides) => {
-                sides.front.collect_effects(call);
-                sides.back.collect_effects(call);
-            }
+            Self::TwoSided(_) => {}
             Self::Mask(mask) => {
                 call(Effect::Opacity, true);
                 call(Effect::Textures, mask.opacity.varies());
-                mask.surface.collect_effects(call);
             }
             Self::Blend(blend) => {
                 call(Effect::Blends, true);
                 call(Effect::Textures, blend.weight.varies());
-                for surface in &blend.surfaces {
-                    surface.collect_effects(call);
-                }
             }
-            Self::BumpMap(map) => {
-                call(Effect::BumpMaps, true);
-                map.nested.surface.collect_effects(call);
-            }
-            Self::NormalMap(map) => {
-                call(Effect::BumpMaps, true);
-                map.nested.surface.collect_effects(call);
-            }
+            Self::BumpMap(_) | Self::NormalMap(_) => call(Effect::BumpMaps, true),
         }
+        effects
     }
 }

@@ -6,6 +6,7 @@
 //! | (any name) | bsdf | the bsdf | required |
 
 use super::material::SeenPoint;
+use super::stated::Stated;
 use super::surface::Surface;
 use super::{Bsdf, Model, Null};
 use crate::scene::error::SceneError;
@@ -17,12 +18,12 @@ use crate::spectrum::Colour;
 #[derive(Clone, Debug)]
 pub(super) struct Mask {
     pub opacity: FloatTexture,
-    pub surface: Surface,
+    pub surface: Stated,
 }
 
 impl Mask {
     /// The masked surface; without a mask where that would be all or nothing.
-    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Surface, SceneError> {
+    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Stated, SceneError> {
         let [nested] = object.children(Class::Bsdf)[..] else {
             return Err(object.error("a `mask` contains one bsdf"));
         };
@@ -30,9 +31,9 @@ impl Mask {
         object.finish()?;
         let surface = Surface::load(&nested.object, textures)?;
         Ok(match opacity {
-            FloatTexture::Uniform(opacity) if opacity <= 0.0 => Surface::Null,
+            FloatTexture::Uniform(opacity) if opacity <= 0.0 => Stated::by(object, Surface::Null),
             FloatTexture::Uniform(opacity) if opacity >= 1.0 => surface,
-            opacity => Surface::Mask(Box::new(Self { opacity, surface })),
+            opacity => Stated::by(object, Surface::Mask(Box::new(Self { opacity, surface }))),
         })
     }
 

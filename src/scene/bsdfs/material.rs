@@ -7,12 +7,14 @@
 
 use glam::Vec3;
 
+use super::stated::Stated;
 use super::surface::Surface;
 use super::{Bsdf, DiffuseMaterial, Side};
 use crate::sampling::Frame;
 use crate::scene::effects::Effect;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
+use crate::scene::source::Source;
 use crate::scene::textures::{AskedAttribute, SpectrumTexture, TextureLoader};
 use crate::scene::xml::Object;
 use crate::spectrum::{Colour, SpectralCurve};
@@ -21,6 +23,7 @@ use crate::spectrum::{Colour, SpectralCurve};
 #[derive(Clone, Debug)]
 pub struct Material {
     tree: Surface,
+    source: Option<Box<Source>>,
     needs_parameters: bool,
     is_mixed: bool,
     /// The mesh attributes that it asks for.
@@ -55,17 +58,23 @@ impl Material {
             needs_parameters: tree.needs_parameters(),
             is_mixed: tree.is_mixed(),
             attributes: Vec::new(),
+            source: None,
             tree,
         }
     }
 
-    /// The same material, which asks for these mesh attributes.
-    pub(super) fn with_attributes(self, attributes: Vec<AskedAttribute>) -> Self {
-        Self { attributes, ..self }
+    /// What `change` makes of it.
+    pub(super) fn changed(self, change: impl FnOnce(Surface) -> Surface) -> Self {
+        Self {
+            attributes: self.attributes,
+            source: self.source,
+            ..Self::new(change(self.tree))
+        }
     }
 
-    pub(super) fn into_tree(self) -> Surface {
-        self.tree
+    /// The bsdf of the scene file that it is; none where a shape has no bsdf.
+    pub fn source(&self) -> Option<&Source> {
+        self.source.as_deref()
     }
 
     /// What a shape that emits and has no bsdf is made of: it reflects nothing.
@@ -102,17 +111,25 @@ impl Material {
         self.tree.is_matte()
     }
 
-    /// The effects that it calls for, each once.
+    /// The effects that it calls for.
     pub(in crate::scene) fn effects(&self) -> Vec<Effect> {
         self.tree.effects()
+    }
+
+    /// The effects that it calls for, each with the bsdf in it that does; none where a shape has no bsdf.
+    pub(in crate::scene) fn calls(&self) -> Vec<(Effect, Source)> {
+        match self.source() {
+            Some(source) => self.tree.calls(source),
+            None => Vec::new(),
+        }
     }
 
     /// The diffuse reflectance of a side, where it has one that is the same at every point.
     #[inline(always)]
     pub(crate) fn matte(&self, side: Side) -> Option<&SpectralCurve> {
         let front = match (&self.tree, side) {
-            (Surface::TwoSided(sides), Side::Front) => &sides.front,
-            (Surface::TwoSided(sides), Side::Back) => &sides.back,
+            (Surface::TwoSided(sides), Side::Front) => &sides.front.surface,
+            (Surface::TwoSided(sides), Side::Back) => &sides.back.surface,
             (surface, Side::Front) => surface,
             (_, Side::Back) => return None,
         };
@@ -145,6 +162,10 @@ pub(in crate::scene) fn load(
     object: &Object,
     textures: &mut TextureLoader,
 ) -> Result<Material, SceneError> {
-    let tree = Surface::load(object, textures)?;
-    Ok(Material::new(tree).with_attributes(textures.take_attributes()))
+    let Stated { surface, source } = Surface::load(object, textures)?;
+    Ok(Material {
+        source: Some(source),
+        attributes: textures.take_attributes(),
+        ..Material::new(surface)
+    })
 }

@@ -38,6 +38,7 @@ mod rough_plastic;
 mod roughness;
 mod sellmeier;
 mod side;
+mod stated;
 mod surface;
 mod thin_dielectric;
 mod twosided;

@@ -11,6 +11,7 @@ use glam::Vec3;
 use super::Bsdf;
 use super::material::SeenPoint;
 use super::perturbed::Tilted;
+use super::stated::Stated;
 use super::surface::Surface;
 use crate::scene::error::SceneError;
 use crate::scene::textures::{SpectrumTexture, TextureLoader};
@@ -29,7 +30,7 @@ pub(super) struct NormalMap {
 
 impl NormalMap {
     /// The tilted surface; the nested one where no normal is tilted.
-    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Surface, SceneError> {
+    pub fn load(object: &Object, textures: &mut TextureLoader) -> Result<Stated, SceneError> {
         if !object.has("normalmap") {
             return Err(object.missing("normalmap"));
         }
@@ -41,7 +42,7 @@ impl NormalMap {
         let is_straight = |normal: &SpectralCurve| normal.rgb() == STRAIGHT;
         Ok(match &map.normals {
             SpectrumTexture::Uniform(normal) if is_straight(normal) => map.nested.surface,
-            _ => Surface::NormalMap(Box::new(map)),
+            _ => Stated::by(object, Surface::NormalMap(Box::new(map))),
         })
     }
 

@@ -11,6 +11,7 @@
 use glam::Vec3;
 
 use super::material::SeenPoint;
+use super::stated::Stated;
 use super::surface::Surface;
 use super::{BsdfSample, BsdfValue, Model};
 use crate::sampling::Frame;
@@ -22,7 +23,7 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 /// What a bump map and a normal map have in common.
 #[derive(Clone, Debug)]
 pub(super) struct Tilted {
-    pub surface: Surface,
+    pub surface: Stated,
     flip_invalid_normals: bool,
     use_shadowing_function: bool,
 }

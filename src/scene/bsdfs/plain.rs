@@ -12,8 +12,7 @@ impl Material {
         if !self.effects().contains(&effect) {
             return self;
         }
-        let attributes = self.attributes().to_vec();
-        Self::new(self.into_tree().without(effect)).with_attributes(attributes)
+        self.changed(|tree| tree.without(effect))
     }
 }
 
@@ -22,28 +21,28 @@ impl Surface {
     fn without(mut self, effect: Effect) -> Self {
         match &mut self {
             Self::TwoSided(sides) => {
-                leave_out(&mut sides.front, effect);
-                leave_out(&mut sides.back, effect);
+                leave_out(&mut sides.front.surface, effect);
+                leave_out(&mut sides.back.surface, effect);
                 return self;
             }
-            Self::Mask(mask) => leave_out(&mut mask.surface, effect),
+            Self::Mask(mask) => leave_out(&mut mask.surface.surface, effect),
             Self::Blend(blend) => {
-                for surface in &mut blend.surfaces {
-                    leave_out(surface, effect);
+                for nested in &mut blend.surfaces {
+                    leave_out(&mut nested.surface, effect);
                 }
             }
-            Self::BumpMap(map) => leave_out(&mut map.nested.surface, effect),
-            Self::NormalMap(map) => leave_out(&mut map.nested.surface, effect),
+            Self::BumpMap(map) => leave_out(&mut map.nested.surface.surface, effect),
+            Self::NormalMap(map) => leave_out(&mut map.nested.surface.surface, effect),
             _ => {}
         }
         match (effect, self) {
-            (Effect::Opacity, Self::Mask(mask)) => mask.surface,
+            (Effect::Opacity, Self::Mask(mask)) => mask.surface.surface,
             (Effect::Blends, Self::Blend(blend)) => {
                 let [first, _] = blend.surfaces;
-                first
+                first.surface
             }
-            (Effect::BumpMaps, Self::BumpMap(map)) => map.nested.surface,
-            (Effect::BumpMaps, Self::NormalMap(map)) => map.nested.surface,
+            (Effect::BumpMaps, Self::BumpMap(map)) => map.nested.surface.surface,
+            (Effect::BumpMaps, Self::NormalMap(map)) => map.nested.surface.surface,
             (Effect::Textures, surface) => surface.even(),
             (Effect::Anisotropy, surface) => surface.isotropic(),
             (Effect::Dispersion, surface) => surface.undispersed(),

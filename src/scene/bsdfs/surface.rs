@@ -6,6 +6,7 @@ use super::mask::Mask;
 use super::material::SeenPoint;
 use super::normal_map::NormalMap;
 use super::null::Null;
+use super::stated::Stated;
 use super::{
     Bsdf, ConductorMaterial, DielectricMaterial, DiffuseMaterial, Model, PlasticMaterial,
     PrincipledMaterial, PrincipledThinMaterial, RoughConductorMaterial, RoughDielectricMaterial,
@@ -73,7 +74,22 @@ const SUPPORTED: [&str; 16] = [
 ];
 
 impl Surface {
-    pub(super) fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
+    /// The bsdf `object`. Where one that contains others cannot be seen, it is one of those.
+    pub(super) fn load(
+        object: &Object,
+        textures: &mut TextureLoader,
+    ) -> Result<Stated, SceneError> {
+        match object.plugin.as_str() {
+            "mask" => Mask::load(object, textures),
+            "blendbsdf" => Blend::load(object, textures),
+            "bumpmap" => BumpMap::load(object, textures),
+            "normalmap" => NormalMap::load(object, textures),
+            _ => Self::load_itself(object, textures).map(|surface| Stated::by(object, surface)),
+        }
+    }
+
+    /// The same for bsdfs in whose place no other one comes.
+    fn load_itself(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
         match object.plugin.as_str() {
             "diffuse" => DiffuseMaterial::load(object, textures).map(Self::Diffuse),
             "conductor" => ConductorMaterial::load(object, textures).map(Self::Conductor),
@@ -91,10 +107,6 @@ impl Surface {
                 let material = PrincipledThinMaterial::load(object, textures)?;
                 Ok(Self::PrincipledThin(Box::new(material)))
             }
-            "mask" => Mask::load(object, textures),
-            "blendbsdf" => Blend::load(object, textures),
-            "bumpmap" => BumpMap::load(object, textures),
-            "normalmap" => NormalMap::load(object, textures),
             "null" => object.finish().map(|()| Self::Null),
             "twosided" => {
                 let sides = twosided::TwoSided::load(object, textures)?;
@@ -134,7 +146,7 @@ impl Surface {
             | Self::Mask(_)
             | Self::Null => true,
             Self::Principled(material) => material.is_transmissive(),
-            Self::Blend(blend) => blend.surfaces.iter().any(Self::is_transmissive),
+            Self::Blend(blend) => blend.surfaces.iter().any(|nested| nested.is_transmissive()),
             Self::BumpMap(map) => map.nested.surface.is_transmissive(),
             Self::NormalMap(map) => map.nested.surface.is_transmissive(),
         }
@@ -146,7 +158,7 @@ impl Surface {
             Self::Diffuse(material) => !material.reflectance.varies(),
             Self::TwoSided(sides) => [&sides.front, &sides.back]
                 .into_iter()
-                .all(|side| matches!(side, Self::Diffuse(_)) && side.is_matte()),
+                .all(|side| matches!(side.surface, Self::Diffuse(_)) && side.is_matte()),
             _ => false,
         }
     }
@@ -157,7 +169,7 @@ impl Surface {
             Self::BumpMap(_) | Self::NormalMap(_) => true,
             Self::TwoSided(sides) => sides.front.is_tilted() || sides.back.is_tilted(),
             Self::Mask(mask) => mask.surface.is_tilted(),
-            Self::Blend(blend) => blend.surfaces.iter().any(Self::is_tilted),
+            Self::Blend(blend) => blend.surfaces.iter().any(|nested| nested.is_tilted()),
             _ => false,
         }
     }
@@ -184,7 +196,11 @@ impl Surface {
             }
             Self::Mask(mask) => mask.opacity.varies() || mask.surface.needs_parameters(),
             Self::Blend(blend) => {
-                blend.weight.varies() || blend.surfaces.iter().any(Self::needs_parameters)
+                blend.weight.varies()
+                    || blend
+                        .surfaces
+                        .iter()
+                        .any(|nested| nested.needs_parameters())
             }
             Self::BumpMap(_) | Self::NormalMap(_) => true,
         }
@@ -205,7 +221,7 @@ impl Surface {
             Self::Dielectric(material) => material.indices.disperse(),
             Self::RoughDielectric(material) => material.interface.indices.disperse(),
             Self::Mask(mask) => mask.surface.disperses(),
-            Self::Blend(blend) => blend.surfaces.iter().any(Self::disperses),
+            Self::Blend(blend) => blend.surfaces.iter().any(|nested| nested.disperses()),
             Self::BumpMap(map) => map.nested.surface.disperses(),
             Self::NormalMap(map) => map.nested.surface.disperses(),
             _ => false,

@@ -2,6 +2,7 @@
 //!
 //! It contains one bsdf for both sides, or two: the first for the front, the second for the back. They must not let light through.
 
+use super::stated::Stated;
 use super::surface::Surface;
 use crate::scene::error::SceneError;
 use crate::scene::textures::TextureLoader;
@@ -10,8 +11,8 @@ use crate::scene::xml::{Child, Class, Object};
 /// A surface with a front on both sides.
 #[derive(Clone, Debug)]
 pub(super) struct TwoSided {
-    pub front: Surface,
-    pub back: Surface,
+    pub front: Stated,
+    pub back: Stated,
 }
 
 impl TwoSided {
@@ -29,7 +30,7 @@ impl TwoSided {
     }
 }
 
-fn load_side(child: &Child, textures: &mut TextureLoader) -> Result<Surface, SceneError> {
+fn load_side(child: &Child, textures: &mut TextureLoader) -> Result<Stated, SceneError> {
     let object = &child.object;
     if object.plugin == "twosided" {
         return Err(object.error("a `twosided` cannot contain another one"));

@@ -422,6 +422,36 @@ fn callers_are_told_with_their_place() {
     assert_eq!(told(Effect::PointLights), ["emitter `point` (<scene>:7)"]);
 }
 
+/// Bsdfs that stand in others are told themselves, also where nothing is left of those.
+#[test]
+fn callers_are_the_bsdfs_that_do_it() {
+    let objects = format!(
+        "{PERSPECTIVE}<bsdf type=\"roughconductor\" id=\"metal\"/>\n<shape type=\"sphere\">\n<bsdf type=\"twosided\">\n\
+         <bsdf type=\"blendbsdf\">{}\n<ref id=\"metal\"/>\n<bsdf type=\"plastic\"/></bsdf>\n</bsdf></shape>\n\
+         <shape type=\"sphere\"><bsdf type=\"mask\">{}\n<bsdf type=\"conductor\"/></bsdf></shape>",
+        float("weight", 0.5),
+        float("opacity", 1.0),
+    );
+    let effects = Effects::of(&load(&objects).unwrap());
+    let told = |effect| {
+        let callers = effects.callers(effect);
+        callers
+            .map(|source| (source.plugin.as_str(), source.location.line))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(told(Effect::Blends), [("blendbsdf", 5)]);
+    assert_eq!(told(Effect::Gloss), [("roughconductor", 2)]);
+    assert_eq!(told(Effect::Coatings), [("plastic", 7)]);
+    assert_eq!(told(Effect::Mirrors), [("conductor", 10)]);
+    assert!(told(Effect::Opacity).is_empty());
+    let not_matte: Vec<_> = effects
+        .not_matte()
+        .iter()
+        .map(|s| s.location.line)
+        .collect();
+    assert_eq!(not_matte, [4, 10]);
+}
+
 /// Every effect can be left out, and what is left out is off, in whatever it stands.
 #[test]
 fn plain_counterparts_are_without_the_effect() {
