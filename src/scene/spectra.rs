@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::error::SceneError;
-use super::xml::{Object, SpectrumProperty};
+use super::textures::uniform_daylight;
+use super::xml::{Class, Object, SpectrumProperty};
 use crate::spectrum::{CurveError, SpectralCurve};
 
 /// What a colour is the colour of: it decides how numbers become spectra.
@@ -29,6 +30,13 @@ pub(super) fn spectrum(
         return Ok(None);
     };
     match stated(property, quantity) {
+        Stated::Texture(texture)
+            if quantity == Quantity::Emission
+                && texture.plugin == "d65"
+                && texture.children(Class::Texture).is_empty() =>
+        {
+            uniform_daylight(&texture).map(Some)
+        }
         Stated::Texture(texture) => Err(texture.error(format!(
             "`{name}` of the {object} is the same everywhere: it can be a colour or a spectrum, not a texture"
         ))),

@@ -203,6 +203,21 @@ impl SpectralCurve {
         })
     }
 
+    /// The illuminant D65 (of luminance 1) filtered by this reflectance, or by this emission with the spectrum of one; none for
+    /// measured ones.
+    pub fn filtering_d65(&self) -> Option<Self> {
+        let (filter, scale) = match &self.shape {
+            Shape::Constant(value) => return Self::rgb_emission([*value; 3]).ok(),
+            Shape::Sigmoid(colour) => (*colour, 1.0),
+            Shape::ScaledSigmoid { colour, scale } => (*colour, *scale),
+            Shape::Tabulated(_) | Shape::FilteredD65 { .. } => return None,
+        };
+        Some(Self {
+            rgb: self.rgb,
+            shape: Shape::FilteredD65 { filter, scale },
+        })
+    }
+
     /// The same index, of refraction or of absorption, at all wavelengths and in all channels.
     ///
     /// # Errors

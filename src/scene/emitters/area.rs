@@ -5,7 +5,7 @@
 //! | `radiance` | spectrum or texture | emitted radiance in W/(m^2 sr nm), or in linear sRGB | required |
 //!
 //! By wavelength a texture has the spectra of reflectances, as in Mitsuba: its white is equal energy, not the white of sRGB. Unlike those
-//! of reflectances, its numbers may be greater than 1.
+//! of reflectances, its numbers may be greater than 1. In a [`d65`](crate::scene::textures::Daylight) its white is that of sRGB.
 
 use glam::Vec3;
 

@@ -8,8 +8,8 @@ use glam::{Affine2, DMat4, Mat2, Vec2};
 
 use super::bitmap::Texels;
 use super::{
-    AskedAttribute, AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture,
-    luminance,
+    AskedAttribute, AttributeTexture, Bitmap, Checkerboard, Daylight, FloatTexture, Pattern,
+    SpectrumTexture, luminance,
 };
 use crate::scene::error::SceneError;
 use crate::scene::image_file::{ImageFile, ImageFileError};
@@ -155,6 +155,18 @@ impl<'d> TextureLoader<'d> {
         Bitmap::load(object, texels)
     }
 
+    /// The texture `object` as a colour of `quantity`, for one that contains it.
+    pub(super) fn nested(
+        &mut self,
+        object: &Object,
+        quantity: Quantity,
+    ) -> Result<SpectrumTexture, SceneError> {
+        Ok(match self.texture(object, quantity)? {
+            Loaded::Uniform(curve) => SpectrumTexture::Uniform(curve),
+            Loaded::Pattern(pattern) => SpectrumTexture::Varying(pattern),
+        })
+    }
+
     /// The texture that `object` is, whose colours are ones of `quantity`.
     fn texture(&mut self, object: &Object, quantity: Quantity) -> Result<Loaded, SceneError> {
         match object.plugin.as_str() {
@@ -188,6 +200,15 @@ impl<'d> TextureLoader<'d> {
                     Some(curve) => Loaded::Uniform(curve),
                     None => Loaded::Pattern(Pattern::Attribute(attribute)),
                 })
+            }
+            "d65" if quantity == Quantity::TextureEmission => {
+                Ok(match Daylight::load(object, self)? {
+                    SpectrumTexture::Uniform(curve) => Loaded::Uniform(curve),
+                    SpectrumTexture::Varying(pattern) => Loaded::Pattern(pattern),
+                })
+            }
+            _ if quantity == Quantity::TextureEmission => {
+                Err(object.unsupported(&["bitmap", "checkerboard", "mesh_attribute", "d65"]))
             }
             _ => Err(object.unsupported(&["bitmap", "checkerboard", "mesh_attribute"])),
         }

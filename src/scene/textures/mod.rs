@@ -5,11 +5,14 @@
 
 mod bitmap;
 mod checkerboard;
+mod daylight;
 mod loader;
 mod mesh_attribute;
 
 pub use bitmap::Bitmap;
 pub use checkerboard::Checkerboard;
+pub use daylight::Daylight;
+pub(super) use daylight::uniform as uniform_daylight;
 pub(super) use loader::TextureLoader;
 pub(super) use mesh_attribute::AskedAttribute;
 pub use mesh_attribute::AttributeTexture;
@@ -44,6 +47,8 @@ pub enum Pattern {
     Checkerboard(Box<Checkerboard>),
     /// `mesh_attribute`
     Attribute(AttributeTexture),
+    /// `d65`
+    Daylight(Box<Daylight>),
 }
 
 impl SpectrumTexture {
@@ -146,6 +151,7 @@ impl Pattern {
             Self::Bitmap(bitmap) => bitmap.spectrum::<C>(point.uv, wavelengths),
             Self::Checkerboard(board) => board.square(point).spectrum::<C>(point, wavelengths),
             Self::Attribute(attribute) => attribute.spectrum::<C>(point, wavelengths),
+            Self::Daylight(daylight) => daylight.spectrum::<C>(point, wavelengths),
         }
     }
 
@@ -154,6 +160,7 @@ impl Pattern {
             Self::Bitmap(bitmap) => bitmap.number(point.uv),
             Self::Checkerboard(board) => board.other_square(point).number(point),
             Self::Attribute(attribute) => attribute.number(point),
+            Self::Daylight(daylight) => daylight.filter().number(point),
         }
     }
 
@@ -162,6 +169,7 @@ impl Pattern {
             Self::Bitmap(bitmap) => bitmap.rgb(point.uv),
             Self::Checkerboard(board) => board.square(point).rgb(point),
             Self::Attribute(attribute) => attribute.rgb(point),
+            Self::Daylight(daylight) => daylight.filter().rgb(point),
         }
     }
 
@@ -171,6 +179,7 @@ impl Pattern {
             Self::Checkerboard(board) => board.mean(),
             // What a mesh says is not known before its shape is.
             Self::Attribute(_) => 0.5,
+            Self::Daylight(daylight) => daylight.filter().mean(),
         }
     }
 }

@@ -224,3 +224,81 @@ fn the_mean_of_a_texture_is_that_over_the_shape() {
     let expected = luminance([0.4, 1.0 / 3.0, 1.3 / 3.0]);
     assert_close(&[mean(&triangle.unwrap())], &[expected], 0.02);
 }
+
+/// `emitter.eval(si)` of Mitsuba 3.9.1 at the texture coordinates (0.3, 0.4) and (0.7, 0.4).
+#[test]
+fn daylight_is_mitsubas() {
+    let lamp = |content: &str| {
+        glowing(&format!(
+            r#"<texture type="d65" name="radiance">{content}</texture>"#
+        ))
+    };
+    let check = |scene: &Scene, u: f32, rgb: [f32; 3], spectral: [f32; 4]| {
+        assert_close(&glow::<Rgb>(scene, [u, 0.4], &()).0, &rgb, 1e-4);
+        let values = glow::<Spectral<4>>(scene, [u, 0.4], &Wavelengths::at(NM));
+        assert_close(&values.0, &spectral, 0.02);
+    };
+    const WHITE: [f32; 4] = [0.924125, 1.17097, 1.0509971, 0.8083726];
+    const ORANGE: [f32; 4] = [0.11496064, 0.17339887, 0.34439245, 0.7290021];
+    check(&lamp(""), 0.3, [1.0; 3], WHITE);
+    let colour = r#"<rgb name="color" value="1, 0.5, 0.2"/><float name="scale" value="3"/>"#;
+    let filtered = [0.46621802, 1.0383297, 1.6811169, 2.578861];
+    check(&lamp(colour), 0.3, [3.0, 1.5, 0.6], filtered);
+    let board = |second: &str| {
+        let first = r#"<rgb name="color0" value="0.9, 0.3, 0.1"/>"#;
+        lamp(&format!(
+            r#"<texture type="checkerboard">{first}{second}</texture>"#
+        ))
+    };
+    let varying = board(r#"<float name="color1" value="2"/>"#);
+    check(&varying, 0.3, [0.9, 0.3, 0.1], ORANGE);
+    check(&varying, 0.7, [2.0; 3], WHITE.map(|value| 2.0 * value));
+    let plain = board(r#"<rgb name="color1" value="0.9, 0.3, 0.1"/>"#);
+    assert!(area_light(&plain).0.uniform_radiance().is_some());
+    check(&plain, 0.7, [0.9, 0.3, 0.1], ORANGE);
+}
+
+#[test]
+fn daylight_that_is_wrong_is_refused() {
+    let texture = r#"<texture type="checkerboard"/>"#;
+    let lamp = |content: &str| {
+        load_all(&format!(
+            r#"<shape type="rectangle"><emitter type="area"><texture type="d65" name="radiance">{content}</texture></emitter></shape>"#
+        ))
+        .unwrap_err()
+    };
+    for (content, message) in [
+        (
+            format!(r#"{texture}<float name="scale" value="2"/>"#),
+            "either a texture or `scale`",
+        ),
+        (
+            format!(r#"{texture}<rgb name="color" value="1"/>"#),
+            "either a texture or `color`",
+        ),
+        (format!("{texture}{texture}"), "one texture at most"),
+        (
+            r#"<float name="color" value="2"/>"#.to_owned(),
+            "has to be an <rgb>",
+        ),
+        (r#"<float name="scale" value="-1"/>"#.to_owned(), "-1"),
+        (
+            r#"<texture type="marble"/>"#.to_owned(),
+            "mesh_attribute, d65",
+        ),
+    ] {
+        let said = lamp(&content);
+        assert!(said.contains(message), "{said}");
+    }
+    let everywhere = |content: &str| {
+        load_all(&format!(
+            r#"<emitter type="constant"><spectrum type="d65" name="radiance">{content}</spectrum></emitter>"#
+        ))
+    };
+    assert!(everywhere(r#"<float name="scale" value="2"/>"#).is_ok());
+    assert!(
+        everywhere(texture)
+            .unwrap_err()
+            .contains("the same everywhere")
+    );
+}
