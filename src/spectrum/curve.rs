@@ -55,7 +55,7 @@ impl Shape {
 pub const MAX_EMISSION: f32 = 1e30;
 
 /// The greatest index of refraction or absorption: far above all that is real.
-const MAX_INDEX: f32 = 1e6;
+pub const MAX_INDEX: f32 = 1e6;
 
 /// The sodium D line, at which indices of refraction are told, in nm.
 const SODIUM_D: f32 = 589.3;

@@ -22,7 +22,7 @@ mod wavelengths;
 
 pub use cie::{WAVELENGTH_MAX, WAVELENGTH_MIN, xyz_from_srgb};
 pub use colour::{Colour, Rgb, Spectral};
-pub use curve::{MAX_EMISSION, SpectralCurve};
+pub use curve::{MAX_EMISSION, MAX_INDEX, SpectralCurve};
 pub use emission_image::{BetweenTexels, EmissionImage};
 pub use error::{CurveError, Place};
 pub use reflectances::Reflectances;

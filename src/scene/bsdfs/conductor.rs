@@ -27,11 +27,22 @@ pub struct ConductorMaterial {
 impl ConductorMaterial {
     pub(super) fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
         let material = Self {
-            index: ConductorIndex::load(object)?,
+            index: ConductorIndex::load(object, textures)?,
             specular_reflectance: textures.reflectance(object, "specular_reflectance", 1.0)?,
         };
         object.finish()?;
         Ok(material)
+    }
+
+    /// Whether it differs from point to point.
+    pub(super) fn varies(&self) -> bool {
+        self.index.varies() || self.specular_reflectance.varies()
+    }
+
+    /// Makes it the mean of its textures.
+    pub(super) fn make_uniform(&mut self) {
+        self.index.make_uniform();
+        self.specular_reflectance.make_uniform();
     }
 
     pub(super) fn at<C: Colour>(
@@ -40,8 +51,8 @@ impl ConductorMaterial {
         wavelengths: &C::Wavelengths,
     ) -> Conductor<C::Spectrum> {
         Conductor {
-            eta: C::evaluate(&self.index.eta, wavelengths),
-            k: C::evaluate(&self.index.k, wavelengths),
+            eta: self.index.eta.spectrum::<C>(point, wavelengths),
+            k: self.index.k.spectrum::<C>(point, wavelengths),
             reflectance: self.specular_reflectance.spectrum::<C>(point, wavelengths),
         }
     }

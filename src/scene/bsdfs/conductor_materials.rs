@@ -3,11 +3,11 @@
 //! | parameter | type | meaning | default |
 //! |---|---|---|---|
 //! | `material` | string | a name of `conductor_materials.txt`, which says where each comes from, or `none`: a perfect mirror | `none` |
-//! | `eta` | spectrum | instead of `material`: real part of the index of refraction | 0 |
-//! | `k` | spectrum | instead of `material`: imaginary part (absorption) | 1 |
+//! | `eta` | spectrum or texture | instead of `material`: real part of the index of refraction | 0 |
+//! | `k` | spectrum or texture | instead of `material`: imaginary part (absorption) | 1 |
 
 use crate::scene::error::{SceneError, list};
-use crate::scene::spectra::{Quantity, spectrum_or};
+use crate::scene::textures::{SpectrumTexture, TextureLoader};
 use crate::scene::xml::Object;
 use crate::spectrum::{CurveError, SpectralCurve};
 
@@ -17,18 +17,18 @@ const TABLES: &str = include_str!("conductor_materials.txt");
 #[derive(Clone, Debug)]
 pub struct ConductorIndex {
     /// The real part.
-    pub eta: SpectralCurve,
+    pub eta: SpectrumTexture,
     /// The imaginary part.
-    pub k: SpectralCurve,
+    pub k: SpectrumTexture,
 }
 
 impl ConductorIndex {
-    pub(super) fn load(object: &Object) -> Result<Self, SceneError> {
+    pub(super) fn load(object: &Object, textures: &mut TextureLoader) -> Result<Self, SceneError> {
         let material = object.string_or("material", "none")?;
         if material == "none" {
             return Ok(Self {
-                eta: spectrum_or(object, "eta", Quantity::Index, 0.0)?,
-                k: spectrum_or(object, "k", Quantity::Index, 1.0)?,
+                eta: textures.index(object, "eta", 0.0)?,
+                k: textures.index(object, "k", 1.0)?,
             });
         }
         if object.has("eta") || object.has("k") {
@@ -51,12 +51,23 @@ impl ConductorIndex {
     fn from_entries(entries: &[[f32; 3]]) -> Result<Self, CurveError> {
         let column = |index: usize| {
             let column: Vec<(f32, f32)> = entries.iter().map(|row| (row[0], row[index])).collect();
-            SpectralCurve::material_index(&column)
+            SpectralCurve::material_index(&column).map(SpectrumTexture::Uniform)
         };
         Ok(Self {
             eta: column(1)?,
             k: column(2)?,
         })
+    }
+
+    /// Whether it differs from point to point.
+    pub(super) fn varies(&self) -> bool {
+        self.eta.varies() || self.k.varies()
+    }
+
+    /// Makes it the mean of its textures.
+    pub(super) fn make_uniform(&mut self) {
+        self.eta.make_uniform();
+        self.k.make_uniform();
     }
 }
 
@@ -105,6 +116,7 @@ fn entries_of(material: &str) -> Option<Vec<[f32; 3]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::shapes::SurfaceParameters;
 
     #[test]
     fn every_material_is_there_under_all_of_its_names() {
@@ -124,7 +136,9 @@ mod tests {
         // print(mi.load_dict({'type': 'conductor', 'material': 'Au'})), scalar_rgb
         let gold = ConductorIndex::from_entries(&entries_of("Au").unwrap()).unwrap();
         let mitsuba = [[0.143036, 0.375307, 1.44205], [3.983, 2.38556, 1.60336]];
-        for (ours, mitsuba) in [gold.eta.rgb(), gold.k.rgb()].into_iter().zip(mitsuba) {
+        let point = SurfaceParameters::default();
+        let ours = [gold.eta.rgb(&point), gold.k.rgb(&point)];
+        for (ours, mitsuba) in ours.into_iter().zip(mitsuba) {
             for (a, b) in ours.into_iter().zip(mitsuba) {
                 assert!((a - b).abs() < 1e-5, "{ours:?} instead of {mitsuba:?}");
             }

@@ -46,12 +46,12 @@ impl Surface {
             Self::Diffuse(material) => call(Effect::Textures, material.reflectance.varies()),
             Self::Conductor(material) => {
                 call(Effect::Mirrors, true);
-                call(Effect::Textures, material.specular_reflectance.varies());
+                call(Effect::Textures, material.varies());
             }
             Self::RoughConductor(material) => {
                 call(Effect::Gloss, true);
                 call(Effect::Anisotropy, material.roughness.is_anisotropic());
-                let varies = material.metal.specular_reflectance.varies();
+                let varies = material.metal.varies();
                 call(Effect::Textures, varies || material.roughness.varies());
             }
             Self::Dielectric(material) => {

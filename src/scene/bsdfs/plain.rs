@@ -61,9 +61,9 @@ impl Surface {
     fn even(mut self) -> Self {
         match &mut self {
             Self::Diffuse(material) => material.reflectance.make_uniform(),
-            Self::Conductor(material) => material.specular_reflectance.make_uniform(),
+            Self::Conductor(material) => material.make_uniform(),
             Self::RoughConductor(material) => {
-                material.metal.specular_reflectance.make_uniform();
+                material.metal.make_uniform();
                 even_roughness(&mut material.roughness);
             }
             Self::Dielectric(material) | Self::ThinDielectric(material) => even_interface(material),

@@ -36,7 +36,7 @@ impl RoughConductorMaterial {
         textures: &mut TextureLoader,
     ) -> Result<Surface, SceneError> {
         let metal = ConductorMaterial {
-            index: ConductorIndex::load(object)?,
+            index: ConductorIndex::load(object, textures)?,
             specular_reflectance: textures.reflectance(object, "specular_reflectance", 1.0)?,
         };
         let roughness = Roughness::load(object, textures)?;

@@ -177,10 +177,9 @@ impl Surface {
     pub(super) fn needs_parameters(&self) -> bool {
         match self {
             Self::Diffuse(material) => material.reflectance.varies(),
-            Self::Conductor(material) => material.specular_reflectance.varies(),
+            Self::Conductor(material) => material.varies(),
             Self::RoughConductor(material) => {
-                material.metal.specular_reflectance.varies()
-                    || material.roughness.needs_parameters()
+                material.metal.varies() || material.roughness.needs_parameters()
             }
             Self::Dielectric(material) | Self::ThinDielectric(material) => {
                 material.needs_parameters()

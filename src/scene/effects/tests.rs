@@ -305,6 +305,24 @@ fn shared_bsdfs_are_what_each_mesh_says() {
 }
 
 #[test]
+fn indices_of_metals_vary_with_textures() {
+    let index = |second| {
+        let colours = float("color0", 1.5) + &float("color1", second);
+        format!(r#"<texture type="checkerboard" name="eta">{colours}</texture>"#)
+    };
+    for (plugin, name) in [("conductor", "mirrors"), ("roughconductor", "gloss")] {
+        assert_eq!(of_bsdf(plugin, &index(2.5)), [name, "textures"]);
+        assert_eq!(of_bsdf(plugin, &index(1.5)), [name]);
+    }
+    let scene = load(&format!(
+        "{}{PERSPECTIVE}",
+        sphere("conductor", &index(2.5))
+    ))
+    .unwrap();
+    assert_eq!(of(&scene.without(Effect::Textures)), ["mirrors"]);
+}
+
+#[test]
 fn flat_maps_tilt_nothing() {
     let (_folder, flat) = png([[90, 90, 90]; 2]);
     let (_other_folder, steep) = png([[90, 90, 90], [200, 200, 200]]);

@@ -15,7 +15,7 @@ use crate::scene::error::SceneError;
 use crate::scene::image_file::{ImageFile, ImageFileError};
 use crate::scene::spectra::{Quantity, Stated, number, stated};
 use crate::scene::xml::{Document, Object, SpectrumProperty};
-use crate::spectrum::{MAX_EMISSION, SpectralCurve};
+use crate::spectrum::{MAX_EMISSION, MAX_INDEX, SpectralCurve};
 
 /// Loads textures, each file once.
 pub(in crate::scene) struct TextureLoader<'d> {
@@ -68,6 +68,16 @@ impl<'d> TextureLoader<'d> {
         default: f32,
     ) -> Result<SpectrumTexture, SceneError> {
         self.colour_or(object, name, Quantity::Reflectance, default)
+    }
+
+    /// The index of a conductor that `object` has under `name`, or the number `default`.
+    pub fn index(
+        &mut self,
+        object: &Object,
+        name: &'static str,
+        default: f32,
+    ) -> Result<SpectrumTexture, SceneError> {
+        self.colour_or(object, name, Quantity::Index, default)
     }
 
     /// The emission that `object` has under `name`, if it has one.
@@ -234,6 +244,7 @@ impl<'d> TextureLoader<'d> {
                 MAX_EMISSION,
                 "the texture of a lamp has numbers from 0 to 1e30",
             ),
+            Quantity::Index => (MAX_INDEX, "an index has numbers from 0 to 1e6"),
             _ => (1.0, "a texture has numbers from 0 to 1"),
         };
         if let Some(problem) = image.find_unfit(|number| (0.0..=greatest).contains(&number)) {
