@@ -57,7 +57,7 @@ impl IndexBuffer {
     /// Says that triple `index` will be wanted soon, so that the processor need not wait for it then. Any index may be given.
     #[inline(always)]
     pub fn prefetch(&self, index: u32) {
-        prefetch(self.padded.as_ptr().wrapping_add(index as usize));
+        prefetch(&self.padded, index);
     }
 }
 
@@ -115,8 +115,8 @@ impl VertexBuffer {
     #[inline(always)]
     pub fn prefetch(&self, index: u32) {
         match self {
-            Self::Flat(vertices) => prefetch(vertices.as_ptr().wrapping_add(index as usize)),
-            Self::Smooth(vertices) => prefetch(vertices.as_ptr().wrapping_add(index as usize)),
+            Self::Flat(vertices) => prefetch(vertices, index),
+            Self::Smooth(vertices) => prefetch(vertices, index),
         }
     }
 
@@ -150,8 +150,10 @@ impl Deref for IndexBuffer {
     }
 }
 
+/// Says that entry `index` of `list` will be wanted soon, so that the processor need not wait for it then. Any index may be given.
 #[inline(always)]
-fn prefetch<T>(place: *const T) {
+pub(crate) fn prefetch<T>(list: &[T], index: u32) {
+    let place = list.as_ptr().wrapping_add(index as usize);
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};

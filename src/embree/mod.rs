@@ -40,6 +40,7 @@ mod version;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use buffer::prefetch;
 pub use buffer::{FlatVertex, IndexBuffer, SmoothVertex, VertexBuffer};
 pub use denormals::{DenormalsFlushed, flush_denormals_to_zero};
 pub use device::Device;

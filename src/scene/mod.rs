@@ -47,7 +47,7 @@ pub use shapes::{
     ShapeGroup, ShapeSample, Sphere, SurfaceParameters, SurfacePoint, TriangleAttributes,
     Triangles,
 };
-pub(crate) use shapes::{CornerLanes, Parallelogram, SurfaceLanes};
+pub(crate) use shapes::{CornerLanes, Parallelogram, PlaneLanes, SurfaceLanes};
 pub use source::{Source, Sources};
 pub use textures::{
     AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture,

@@ -4,21 +4,24 @@ use std::ops::Range;
 
 use super::batch::Segments;
 use super::engine::Engine;
-use crate::lanes::{CHUNK, load};
-use crate::scene::{CornerLanes, Geometry, Shape, SurfaceLanes};
+use crate::lanes::{CHUNK, VectorLanes, load};
+use crate::scene::{CornerLanes, Geometry, PlaneLanes, Shape, SurfaceLanes};
 use crate::spectrum::Colour;
 
 /// The surface points of a chunk of hits.
 ///
-/// Vertices lie scattered in memory, and a loop that fetched and used them hit by hit would wait for each in turn. So a
-/// chunk is taken in steps, indices, vertices, arithmetic: what a step needs is announced a step before, and the processor
-/// fetches it meanwhile; the arithmetic is one loop over lanes.
+/// Triangles lie scattered in memory, and a loop that fetched and used them hit by hit would wait for each in turn. So a
+/// chunk is taken in steps: planes of flat triangles and indices of others, vertices, arithmetic. What a step needs is announced a
+/// step before, and the processor fetches it meanwhile; the arithmetic is one loop over lanes.
 pub(super) struct SurfaceChunk<'s> {
     /// The shapes hit; none by misses.
     pub shapes: [Option<&'s Shape>; CHUNK],
     /// Those of the chunk that follows.
     next_shapes: [Option<&'s Shape>; CHUNK],
-    corners: [[u32; 3]; CHUNK],
+    /// Of flat triangles in the world.
+    planes: PlaneLanes<CHUNK>,
+    /// Of all other triangles.
+    corners: [Option<[u32; 3]>; CHUNK],
     triangles: CornerLanes<CHUNK>,
     /// Those of misses mean nothing. Those in instances are in the space of the group until they are [placed](Self::place).
     pub points: SurfaceLanes<CHUNK>,
@@ -29,7 +32,8 @@ impl<'s> SurfaceChunk<'s> {
         Self {
             shapes: [None; CHUNK],
             next_shapes: [None; CHUNK],
-            corners: [[0; 3]; CHUNK],
+            planes: PlaneLanes::default(),
+            corners: [None; CHUNK],
             triangles: CornerLanes::default(),
             points: SurfaceLanes::default(),
         }
@@ -49,37 +53,63 @@ impl<'s> SurfaceChunk<'s> {
         }
         self.shapes = self.next_shapes;
         let primitives = &segments.hits.primitive_ids()[chunk.clone()];
-        let mut has_quadrics = false;
+        let (mut has_corners, mut has_quadrics) = (false, false);
         for (lane, &primitive) in primitives.iter().enumerate() {
-            if let Some(shape) = self.shapes[lane] {
-                match &shape.geometry {
-                    Geometry::Triangles(mesh) => {
-                        let corners = mesh.corners(primitive);
-                        mesh.prefetch(corners);
-                        self.corners[lane] = corners;
+            let (mut plane, mut corners) = (None, None);
+            match self.shapes[lane].map(|shape| &shape.geometry) {
+                None => {}
+                Some(Geometry::Triangles(mesh)) => {
+                    plane = mesh.plane(primitive);
+                    if plane.is_none() {
+                        let triangle = mesh.corners(primitive);
+                        mesh.prefetch_vertices(triangle);
+                        corners = Some(triangle);
+                        has_corners = true;
                     }
-                    _ => has_quadrics = true,
                 }
+                Some(_) => has_quadrics = true,
             }
+            self.planes.set(lane, plane);
+            self.corners[lane] = corners;
         }
         self.announce(engine, segments, chunk.end);
+        if has_corners {
+            self.interpolate(segments, chunk.clone());
+        }
+        self.meet_planes(segments, chunk.clone());
+        if has_quadrics {
+            self.locate_quadrics(segments, chunk);
+        }
+    }
+
+    /// Finds the points of triangles that have no plane.
+    #[inline(always)]
+    fn interpolate<C: Colour>(&mut self, segments: &Segments<C>, chunk: Range<usize>) {
         let shapes = &self.shapes[..chunk.len()];
         for (lane, (shape, corners)) in shapes.iter().zip(&self.corners).enumerate() {
-            if let Some(Shape {
-                geometry: Geometry::Triangles(mesh),
-                ..
-            }) = shape
+            if let (Some(shape), Some(corners)) = (shape, corners)
+                && let Geometry::Triangles(mesh) = &shape.geometry
             {
                 mesh.fetch(*corners, &mut self.triangles, lane);
             }
         }
         let (mut u, mut v) = ([0.0; CHUNK], [0.0; CHUNK]);
         load(&mut u, &segments.hits.us()[chunk.clone()]);
-        load(&mut v, &segments.hits.vs()[chunk.clone()]);
+        load(&mut v, &segments.hits.vs()[chunk]);
         self.triangles.interpolate(&u, &v, &mut self.points);
-        if has_quadrics {
-            self.locate_quadrics(segments, chunk);
-        }
+    }
+
+    /// Finds the points of those that have.
+    #[inline(always)]
+    fn meet_planes<C: Colour>(&mut self, segments: &Segments<C>, chunk: Range<usize>) {
+        let rays = &segments.rays;
+        let (mut origins, mut directions) = (VectorLanes::default(), VectorLanes::default());
+        let mut t = [0.0; CHUNK];
+        origins.load(rays.origins().map(|axis| &axis[chunk.clone()]));
+        directions.load(rays.directions().map(|axis| &axis[chunk.clone()]));
+        load(&mut t, &rays.tfars()[chunk]);
+        let points = &mut self.points;
+        self.planes.find_points(&origins, &directions, &t, points);
     }
 
     /// Looks at what the chunk of segments from `start` on has met, and says that its triangles will be asked for soon.
@@ -96,7 +126,7 @@ impl<'s> SurfaceChunk<'s> {
                 ..
             }) = next
             {
-                mesh.prefetch_corners(primitive);
+                mesh.prefetch_triangle(primitive);
             }
         }
     }

@@ -26,6 +26,11 @@ impl Loader<'_> {
         for object in objects().filter(is_placed) {
             self.shape(object)?;
         }
+        for shape in &mut self.shapes {
+            if let Geometry::Triangles(mesh) = &mut shape.geometry {
+                mesh.prepare_planes();
+            }
+        }
         let instances = of_plugin("instance").map(|object| Instance::load(object, self));
         let instances = instances.collect::<Result<_, _>>()?;
         for object in of_plugin("shapegroup") {

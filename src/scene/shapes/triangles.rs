@@ -8,9 +8,10 @@ use glam::{DVec3, Vec2, Vec3};
 use super::lanes::{CornerLanes, SurfaceLanes};
 use super::mesh_sampling::{MeshSampling, Parallelogram};
 use super::{
-    AttributesAt, Geometry, HitCoordinates, Placement, ShapeSample, SurfaceParameters, SurfacePoint,
+    AttributesAt, Geometry, HitCoordinates, Placement, Plane, ShapeSample, SurfaceParameters,
+    SurfacePoint,
 };
-use crate::embree::{IndexBuffer, VertexBuffer};
+use crate::embree::{self, IndexBuffer, VertexBuffer};
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;
 use crate::scene::mesh::{self, MeshAttribute, MeshData};
@@ -23,6 +24,8 @@ pub struct Triangles {
     indices: Arc<IndexBuffer>,
     attributes: TriangleAttributes,
     area: f32,
+    /// Those of the triangles. Made only for flat meshes that stand in the world: rays are not in the space of a group.
+    planes: Vec<Plane>,
     /// Made only for meshes that emit.
     sampling: Option<MeshSampling>,
 }
@@ -128,7 +131,20 @@ impl Triangles {
             indices,
             attributes,
             area,
+            planes: Vec::new(),
             sampling: None,
+        }
+    }
+
+    /// Makes a mesh that is shaded flat ready for [`Self::plane`].
+    pub(in crate::scene) fn prepare_planes(&mut self) {
+        if let VertexBuffer::Flat(vertices) = &*self.vertices {
+            let flipped = self.attributes.flip_normals;
+            let planes = self.indices.iter().map(|triangle| {
+                let corners = triangle.map(|corner| vertices[corner as usize].position.into());
+                Plane::of(corners, flipped)
+            });
+            self.planes = planes.collect();
         }
     }
 
@@ -254,6 +270,12 @@ impl Triangles {
         }
     }
 
+    /// The plane of a triangle, if the mesh has such.
+    #[inline(always)]
+    pub(crate) fn plane(&self, triangle: u32) -> Option<Plane> {
+        self.planes.get(triangle as usize).copied()
+    }
+
     /// The vertices of a triangle. Together with [`Self::fetch`] and [`CornerLanes::interpolate`] this is [`Self::point`]
     /// in three steps, so that a batch can take each step for many hits at once and does not wait for the memory of one
     /// after the other.
@@ -262,15 +284,19 @@ impl Triangles {
         self.indices[triangle as usize]
     }
 
-    /// Says that [`Self::corners`] of a triangle will be asked for soon.
+    /// Says that [`Self::plane`] of a triangle, or else [`Self::corners`], will be asked for soon.
     #[inline(always)]
-    pub(crate) fn prefetch_corners(&self, triangle: u32) {
-        self.indices.prefetch(triangle);
+    pub(crate) fn prefetch_triangle(&self, triangle: u32) {
+        if self.planes.is_empty() {
+            self.indices.prefetch(triangle);
+        } else {
+            embree::prefetch(&self.planes, triangle);
+        }
     }
 
     /// Says that [`Self::fetch`] will be asked for soon.
     #[inline(always)]
-    pub(crate) fn prefetch(&self, corners: [u32; 3]) {
+    pub(crate) fn prefetch_vertices(&self, corners: [u32; 3]) {
         for corner in corners {
             self.vertices.prefetch(corner);
         }

@@ -1,0 +1,158 @@
+//! Planes of triangles: all that shading a flat triangle needs, where the ray is known that hit it.
+
+use glam::Vec3;
+
+use super::lanes::SurfaceLanes;
+use crate::lanes::VectorLanes;
+
+/// The plane of a triangle, in a quarter of a cache line: the points p with p · normal = distance.
+///
+/// Its normal and its distance fit each other to the last place, so a point of the plane is as precise across the surface
+/// as one interpolated between the vertices; and nobody has to fetch those, or their indices.
+#[repr(C, align(16))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Plane {
+    /// Unit geometric normal on the outer side, in world space; zero for a triangle without area.
+    normal: [f32; 3],
+    /// From the origin of world space along the normal, in scene units.
+    distance: f32,
+}
+
+impl Plane {
+    /// The plane of a triangle with these corners in world space. Its outer side is the one from which they lie counterclockwise,
+    /// or the other if `flipped`.
+    pub fn of(corners: [Vec3; 3], flipped: bool) -> Self {
+        let [a, b, c] = corners.map(Vec3::as_dvec3);
+        let outward = (b - a).cross(c - a).normalize_or_zero();
+        let normal = if flipped { -outward } else { outward }.as_vec3();
+        // Of the normal as it was rounded: in the middle it matters least that it was.
+        let distance = normal.as_dvec3().dot((a + b + c) / 3.0) as f32;
+        Self {
+            normal: normal.into(),
+            distance,
+        }
+    }
+}
+
+/// The planes of up to `N` triangles.
+#[derive(Clone, Debug)]
+pub(crate) struct PlaneLanes<const N: usize> {
+    normal: VectorLanes<N>,
+    distance: [f32; N],
+    is_set: [bool; N],
+}
+
+impl<const N: usize> Default for PlaneLanes<N> {
+    fn default() -> Self {
+        Self {
+            normal: VectorLanes::default(),
+            distance: [0.0; N],
+            is_set: [false; N],
+        }
+    }
+}
+
+impl<const N: usize> PlaneLanes<N> {
+    /// Puts a plane into its lane, or none.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, plane: Option<Plane>) {
+        self.is_set[lane] = plane.is_some();
+        if let Some(plane) = plane {
+            self.normal.put(lane, plane.normal.into());
+            self.distance[lane] = plane.distance;
+        }
+    }
+
+    /// Sets the points of the lanes with a plane: each is where the ray from `origins` in `directions` is at `t`, moved onto the
+    /// plane. All in world space.
+    ///
+    /// The error of a point on a ray grows with the distance (Wächter and Binder 2019, "A Fast and Robust Method for Avoiding
+    /// Self-Intersection"). What of it would matter, for it would lift the point off the surface, is undone here.
+    #[inline(always)]
+    pub fn find_points(
+        &self,
+        origins: &VectorLanes<N>,
+        directions: &VectorLanes<N>,
+        t: &[f32; N],
+        points: &mut SurfaceLanes<N>,
+    ) {
+        for i in 0..N {
+            let normal = self.normal.get(i);
+            let along = origins.get(i) + t[i] * directions.get(i);
+            let position = along - (normal.dot(along) - self.distance[i]) * normal;
+            let choose = |flat: Vec3, other: Vec3| {
+                let choose = |flat, other| if self.is_set[i] { flat } else { other };
+                Vec3::new(
+                    choose(flat.x, other.x),
+                    choose(flat.y, other.y),
+                    choose(flat.z, other.z),
+                )
+            };
+            let (geometric, shading) = (
+                choose(normal, points.geometric_normal.get(i)),
+                choose(normal, points.shading_normal.get(i)),
+            );
+            points
+                .position
+                .put(i, choose(position, points.position.get(i)));
+            points.geometric_normal.put(i, geometric);
+            points.shading_normal.put(i, shading);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::scene::shapes::lanes::CornerLanes;
+
+    fn vector(extent: f32) -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-extent..extent).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        /// Even of rays from afar, whose own points are a thousandth off.
+        #[test]
+        fn points_lie_on_the_surface_as_precisely_as_interpolated_ones(
+            corners in prop::array::uniform3(vector(1.0)),
+            place in vector(10.0),
+            (u, v) in (0.0..0.5_f32, 0.0..0.5_f32),
+            from in vector(1e4),
+            flipped in any::<bool>(),
+        ) {
+            let corners = corners.map(|corner| corner + place);
+            let [a, b, c] = corners.map(Vec3::as_dvec3);
+            let normal = (b - a).cross(c - a);
+            prop_assume!(normal.length() > 1e-3);
+            let normal = normal.normalize();
+            let target = a + (b - a) * f64::from(u) + (c - a) * f64::from(v);
+            let offset = target.as_vec3() - from;
+            let (t, direction) = (offset.length(), offset.normalize());
+            prop_assume!(direction.as_dvec3().dot(normal).abs() > 0.1);
+
+            let mut planes = PlaneLanes::<2>::default();
+            planes.set(0, Some(Plane::of(corners, flipped)));
+            let (mut origins, mut directions) = (VectorLanes::default(), VectorLanes::default());
+            origins.put(0, from);
+            directions.put(0, direction);
+            let mut points = SurfaceLanes::<2>::default();
+            let mut lanes = CornerLanes::<2>::default();
+            lanes.set(0, corners, flipped);
+            lanes.set(1, corners, flipped);
+            lanes.interpolate(&[u; 2], &[v; 2], &mut points);
+            let interpolated = points.get(1);
+            planes.find_points(&origins, &directions, &[t; 2], &mut points);
+
+            let found = points.get(0);
+            let height = |point: Vec3| (point.as_dvec3() - a).dot(normal).abs();
+            prop_assert!(height(found.position) < 8e-6, "{}", height(found.position));
+            prop_assert!((found.position.as_dvec3() - target).length() < 0.1);
+            prop_assert!((found.geometric_normal - interpolated.geometric_normal).length() < 1e-3);
+            prop_assert_eq!(found.shading_normal, found.geometric_normal);
+            // A lane without a plane stays as it is.
+            prop_assert_eq!(points.get(1), interpolated);
+        }
+    }
+}
