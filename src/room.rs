@@ -19,3 +19,12 @@ pub(crate) fn resize<T: Clone + Default>(list: &mut Vec<T>, count: usize) {
     list.reserve(with_room(count).saturating_sub(list.len()));
     list.resize(count, T::default());
 }
+
+/// `list` becomes `source` in another order, number `order[i]` in place i; or nothing, if `source` is.
+pub(crate) fn gather<T: Copy>(list: &mut Vec<T>, source: &[T], order: &[u32]) {
+    list.clear();
+    if !source.is_empty() {
+        list.reserve(with_room(order.len()));
+        list.extend(order.iter().map(|&i| source[i as usize]));
+    }
+}

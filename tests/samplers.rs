@@ -1,4 +1,4 @@
-//! Sobol points: the same image as by independent numbers, by every strategy, with less noise.
+//! Sobol points, and sorted populations with lattices: the same image as by independent numbers, by every strategy, with less noise.
 
 mod support;
 
@@ -34,7 +34,7 @@ fn noise(images: &Replicates) -> f64 {
 }
 
 #[test]
-fn every_strategy_renders_the_same_image_by_sobol_points() {
+fn every_strategy_renders_the_same_image_by_every_sampler() {
     let scene = many_emitters(24);
     // Of one pass there is one unit of samples: the film does not say how noisy it is, as it could not know.
     const SPP: u32 = 16;
@@ -45,44 +45,55 @@ fn every_strategy_renders_the_same_image_by_sobol_points() {
         SPP,
     );
     let expected = reference.blocks(8);
-    for (index, strategy) in (1..).zip(StrategyKind::ALL) {
+    let samplers = [SamplerKind::Sobol, SamplerKind::ArrayQmc];
+    let cases = samplers
+        .into_iter()
+        .flat_map(|sampler| StrategyKind::ALL.map(|strategy| (sampler, strategy)));
+    for (index, (sampler, strategy)) in (1..).zip(cases.clone()) {
         let seeds = 1000 * index..1000 * index + 32;
-        let images = replicates(&scene, settings(strategy, SamplerKind::Sobol), seeds, SPP);
+        let images = replicates(&scene, settings(strategy, sampler), seeds, SPP);
         let blocks = images.blocks(8);
         let pairs = blocks.iter().flatten().zip(expected.iter().flatten());
-        let limit = sidak_threshold(1e-3, StrategyKind::ALL.len() * pairs.clone().count());
+        let limit = sidak_threshold(1e-3, cases.clone().count() * pairs.clone().count());
         for (block, (a, b)) in pairs.enumerate() {
             let z = a.z_of_difference(b);
             assert!(
                 z.abs() < limit,
-                "{strategy}, block {block}: {a:?} {b:?}, z = {z}"
+                "{strategy}, {sampler}, block {block}: {a:?} {b:?}, z = {z}"
             );
         }
     }
 }
 
 #[test]
-fn sobol_points_leave_less_noise() {
+fn points_of_sequences_leave_less_noise() {
     let scene = many_emitters(24);
     let of = |sampler| {
         let settings = settings(StrategyKind::Roulette, sampler);
         noise(&replicates(&scene, settings, 0..96, 16))
     };
-    let [independent, sobol] = SamplerKind::ALL.map(of);
-    println!("variance: independent {independent}, sobol {sobol}");
+    let [independent, sobol, array] = SamplerKind::ALL.map(of);
+    println!("variance: independent {independent}, sobol {sobol}, array-qmc {array}");
     assert!(sobol < 0.8 * independent, "{sobol} against {independent}");
+    assert!(array < 0.8 * independent, "{array} against {independent}");
 }
 
 /// Threads, slices and the passes of other budgets do not matter.
 #[test]
-fn sobol_renders_are_deterministic() {
+fn renders_by_sequences_are_deterministic() {
+    for sampler in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
+        assert_deterministic(sampler);
+    }
+}
+
+fn assert_deterministic(sampler: SamplerKind) {
     let scene = many_emitters(40);
     let spp = |samples| Budget::SamplesPerPixel(NonZeroU32::new(samples).expect("not zero"));
     let image = |threads: usize, slices: &[u32]| {
         let settings = Settings {
             threads: NonZeroUsize::new(threads).expect("not zero"),
             budget: spp(40),
-            ..settings(StrategyKind::GoWithTheWinners, SamplerKind::Sobol)
+            ..settings(StrategyKind::GoWithTheWinners, sampler)
         };
         let render = Render::new(Arc::clone(&scene), settings).expect("it can be rendered");
         let mut state = render.start(5);

@@ -64,7 +64,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "PRECISION", value_enum, default_value_t = Sums::Double)]
     sums: Sums,
 
-    /// Where the random numbers of paths come from: independent or sobol
+    /// Where the random numbers of paths come from: independent, sobol or array-qmc
     #[arg(long, value_name = "NAME", default_value_t = SamplerKind::default())]
     sampler: SamplerKind,
 

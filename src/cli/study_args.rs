@@ -77,7 +77,7 @@ pub struct StudyArgs {
     #[arg(long)]
     rgb: bool,
 
-    /// Where the random numbers of paths come from: independent or sobol
+    /// Where the random numbers of paths come from: independent, sobol or array-qmc
     #[arg(long, value_name = "NAME", default_value_t = SamplerKind::default())]
     sampler: SamplerKind,
 

@@ -31,6 +31,14 @@ impl<T: Copy + Default> Lanes<T> {
         self.len = len;
     }
 
+    /// Becomes `source` in another order, number `order[i]` in place i; or nothing, if `source` is.
+    pub(super) fn gather(&mut self, source: &Self, order: &[u32]) {
+        self.resize(order.len().min(source.len));
+        for (place, &i) in self.iter_mut().zip(order) {
+            *place = source[i as usize];
+        }
+    }
+
     /// The numbers in chunks of `K`, 4, 8 or 16, the padding included.
     #[cfg(embree4)]
     pub(super) fn chunks<const K: usize>(&self) -> &[[T; K]] {

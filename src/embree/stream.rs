@@ -38,6 +38,19 @@ impl Rays {
         self.tfar.resize(len);
     }
 
+    /// Becomes the rays of `source` in another order: number `order[i]` in place i.
+    ///
+    /// # Panics
+    /// When a number is not below the [`len`](Self::len) of `source`.
+    pub fn gather(&mut self, source: &Self, order: &[u32]) {
+        let axes = self.origin.iter_mut().chain(&mut self.direction);
+        for (axis, source) in axes.zip(source.origin.iter().chain(&source.direction)) {
+            axis.gather(source, order);
+        }
+        self.tnear.gather(&source.tnear, order);
+        self.tfar.gather(&source.tfar, order);
+    }
+
     /// How many rays there are.
     pub fn len(&self) -> usize {
         self.tfar.len()
@@ -217,6 +230,21 @@ impl Hits {
                 *geometry = number(instance, *geometry);
             }
         }
+    }
+
+    /// Becomes the hits of `source` in another order: number `order[i]` in place i.
+    ///
+    /// # Panics
+    /// When a number is not below the [`len`](Self::len) of `source`.
+    pub fn gather(&mut self, source: &Self, order: &[u32]) {
+        for (axis, source) in self.normal.iter_mut().zip(&source.normal) {
+            axis.gather(source, order);
+        }
+        self.u.gather(&source.u, order);
+        self.v.gather(&source.v, order);
+        self.primitive_id.gather(&source.primitive_id, order);
+        self.geometry_id.gather(&source.geometry_id, order);
+        self.instance_id.gather(&source.instance_id, order);
     }
 
     /// How many rays were traced.

@@ -1,10 +1,14 @@
 //! In which passes the samples of a pixel are taken.
 
 use super::Budget;
+use crate::sampling::SamplerKind;
 
 /// Samples per pixel of a full pass. With a tile of 256 pixels a batch then has 4096 camera paths: many enough for a
 /// population (a quarter and four times as many were not faster or slower beyond noise).
 const FULL_PASS: u32 = 16;
+
+/// The most samples per pixel of a pass that grows.
+const LARGEST_PASS: u32 = 256;
 
 /// The number of samples that every pixel gets in each pass.
 ///
@@ -13,12 +17,13 @@ const FULL_PASS: u32 = 16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Schedule {
     budget: Budget,
+    sampler: SamplerKind,
 }
 
 impl Schedule {
     /// The schedule for a budget.
-    pub fn new(budget: Budget) -> Self {
-        Self { budget }
+    pub fn new(budget: Budget, sampler: SamplerKind) -> Self {
+        Self { budget, sampler }
     }
 
     /// Samples per pixel of pass number `pass` (from 0), where every pixel has `before` of the passes before and the
@@ -26,17 +31,30 @@ impl Schedule {
     ///
     /// A given number of samples is divided into full passes and a rest. Other budgets have no end of their own, and
     /// start with small passes, 1, 1, 2, 4, 8, so that every pixel has its first sample soon.
+    ///
+    /// Where the samples of a pass gain by being many ([`SamplerKind::ArrayQmc`]), passes grow with the samples that a pixel has: to a
+    /// quarter of them, so that pixels that the last pass does not reach any more lack little.
     pub fn samples(&self, pass: u32, before: u64, until: Budget) -> u32 {
         let whole = match self.budget {
-            Budget::SamplesPerPixel(_) => FULL_PASS,
+            Budget::SamplesPerPixel(total) => self.full_pass(u64::from(total.get())),
             Budget::Time(_) | Budget::Rays(_) => match pass {
                 0 => 1,
-                _ => (1 << (pass - 1).min(31)).min(FULL_PASS),
+                _ => (1 << (pass - 1).min(31)).min(self.full_pass(before)),
             },
         };
         whole
             .min(missing(self.budget, before))
             .min(missing(until, before))
+    }
+
+    /// The size of a full pass for pixels of so many samples.
+    fn full_pass(&self, samples: u64) -> u32 {
+        let grown = match self.sampler {
+            SamplerKind::ArrayQmc => (samples / 4).clamp(1, u64::from(LARGEST_PASS)),
+            SamplerKind::Independent | SamplerKind::Sobol => 1,
+        };
+        // A power of two, and it fits.
+        (1 << grown.ilog2()).max(FULL_PASS)
     }
 }
 
@@ -63,7 +81,7 @@ mod tests {
     }
 
     fn passes(budget: Budget, until: Budget, most: usize) -> Vec<u32> {
-        let schedule = Schedule::new(budget);
+        let schedule = Schedule::new(budget, SamplerKind::Independent);
         let mut before = 0;
         let pass = |pass| {
             let samples = schedule.samples(pass, before, until);
@@ -85,10 +103,30 @@ mod tests {
     }
 
     #[test]
+    fn passes_grow_for_samplers_that_gain_by_it() {
+        let sizes = |budget| {
+            let schedule = Schedule::new(budget, SamplerKind::ArrayQmc);
+            let mut before = 0;
+            let next = |pass| {
+                let samples = schedule.samples(pass, before, spp(2000));
+                before += u64::from(samples);
+                (samples > 0).then_some(samples)
+            };
+            (0..).map_while(next).collect::<Vec<u32>>()
+        };
+        let timed = sizes(TIME);
+        assert_eq!(timed[..8], [1, 1, 2, 4, 8, 16, 16, 16]);
+        assert_eq!(timed.iter().sum::<u32>(), 2000);
+        assert_eq!(timed.iter().max(), Some(&256));
+        assert_eq!(sizes(spp(256)), [64; 4]);
+        assert_eq!(sizes(spp(20)), [16, 4]);
+    }
+
+    #[test]
     fn time_and_rays_start_small_and_never_end() {
         for budget in [TIME, RAYS] {
             assert_eq!(passes(budget, TIME, 8), [1, 1, 2, 4, 8, 16, 16, 16]);
-            let schedule = Schedule::new(budget);
+            let schedule = Schedule::new(budget, SamplerKind::Independent);
             assert_eq!(schedule.samples(u32::MAX, u64::MAX, RAYS), 16);
         }
         assert_eq!(passes(TIME, spp(13), usize::MAX), [1, 1, 2, 4, 5]);

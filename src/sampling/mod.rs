@@ -2,10 +2,12 @@
 
 mod alias;
 mod frame;
+mod lattice;
 mod mersenne_twister;
 mod pdf;
 mod piecewise_bilinear;
 mod random;
+mod ranks;
 mod sampler;
 mod sobol;
 pub mod warp;
@@ -15,5 +17,6 @@ pub use frame::Frame;
 pub use pdf::{AreaPdf, SolidAnglePdf, power_heuristic};
 pub use piecewise_bilinear::{PiecewiseBilinear, SquarePoint};
 pub use random::{RandomStream, StreamKey};
-pub use sampler::{Sampler, SamplerKind, UnknownSampler, Use, decision};
+pub use ranks::Ranks;
+pub use sampler::{Decisions, Sampler, SamplerKind, UnknownSampler, Use};
 pub use sobol::SequencePoint;

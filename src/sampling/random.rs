@@ -66,7 +66,7 @@ impl RandomStream {
 
 /// The upper 24 bits as a number in [0, 1).
 #[inline(always)]
-fn to_uniform(bits: u32) -> f32 {
+pub(super) fn to_uniform(bits: u32) -> f32 {
     (bits >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32)
 }
 

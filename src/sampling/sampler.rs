@@ -6,8 +6,10 @@ use std::str::FromStr;
 use serde::Serialize;
 use thiserror::Error;
 
+use super::lattice::{lattice_coordinate, lattice_coordinates};
+use super::random::to_uniform;
 use super::sobol::COORDINATE_BITS;
-use super::{RandomStream, SequencePoint, StreamKey};
+use super::{RandomStream, Ranks, SequencePoint, StreamKey};
 
 /// How the random numbers of paths are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -19,24 +21,28 @@ pub enum SamplerKind {
     /// The samples of a pixel are the points of one Owen-scrambled Sobol sequence: a path's every choice is a dimension, in
     /// which the samples are spread evenly. Pixels have scrambles of their own.
     Sobol,
+    /// At every bounce, the particles of a pixel are sorted by where they are; neighbours get neighbouring points of one
+    /// lattice, randomly shifted for each pixel, bounce and use (array-RQMC: L'Ecuyer, Lécot and Tuffin 2008).
+    ArrayQmc,
 }
 
 /// A name that is no sampler.
 #[derive(Debug, Error)]
-#[error("there is no sampler `{name}`; there are independent and sobol")]
+#[error("there is no sampler `{name}`; there are independent, sobol and array-qmc")]
 pub struct UnknownSampler {
     name: String,
 }
 
 impl SamplerKind {
     /// Every sampler.
-    pub const ALL: [Self; 2] = [Self::Independent, Self::Sobol];
+    pub const ALL: [Self; 3] = [Self::Independent, Self::Sobol, Self::ArrayQmc];
 
     /// The name on the command line and in metadata.
     pub fn name(self) -> &'static str {
         match self {
             Self::Independent => "independent",
             Self::Sobol => "sobol",
+            Self::ArrayQmc => "array-qmc",
         }
     }
 }
@@ -84,6 +90,19 @@ impl Use {
             Self::Direction(depth) => 2 * depth + 2,
         }
     }
+
+    /// Whether it is that of a camera path at its start, which has no place to be sorted by.
+    fn is_of_camera(self) -> bool {
+        matches!(self, Self::Camera | Self::Lens)
+    }
+}
+
+/// Which kind of points stands behind what a path at a vertex chooses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Points {
+    None,
+    Sobol,
+    Lattice,
 }
 
 /// The random numbers of one batch.
@@ -91,46 +110,49 @@ pub struct Sampler {
     kind: SamplerKind,
     stream: RandomStream,
     key: StreamKey,
+    before: u64,
 }
 
 impl Sampler {
-    /// The numbers of the batch of `key`.
-    pub fn new(kind: SamplerKind, key: StreamKey) -> Self {
+    /// The numbers of the batch of `key`, where each pixel has had `before` samples in all passes before.
+    pub fn new(kind: SamplerKind, key: StreamKey, before: u64) -> Self {
         Self {
             kind,
             stream: RandomStream::new(key),
             key,
+            before,
         }
     }
 
     /// Whether the numbers are those of sequences. If not, points of sequences are never looked at.
     #[inline]
     pub fn has_sequences(&self) -> bool {
-        self.kind == SamplerKind::Sobol
+        self.kind != SamplerKind::Independent
     }
 
-    /// The point of sample number `index` of pixel number `pixel` of the batch's tile, over all passes.
-    pub fn point(&self, pixel: u32, index: u64) -> SequencePoint {
+    /// Who numbers the particles of each pixel anew at every vertex, if they do not keep their points: for a sampler that wants them
+    /// [sorted](SamplerKind::ArrayQmc).
+    pub fn ranks(&self) -> Option<Ranks> {
+        (self.kind == SamplerKind::ArrayQmc).then(|| Ranks::new(self.key, self.before))
+    }
+
+    /// The point of sample number `sample` of this pass of pixel number `pixel` of the batch's tile.
+    pub fn point(&self, pixel: u32, sample: u32) -> SequencePoint {
         let seed = self.key.seed;
         let key = [seed as u32, (seed >> 32) as u32, self.key.tile, pixel];
-        SequencePoint::new(key, index)
+        SequencePoint::new(key, self.before + u64::from(sample))
     }
 
-    /// Up to three numbers in \[0, 1) for what the path at `point` does with them.
-    #[inline(always)]
-    pub fn numbers<const N: usize>(&mut self, point: SequencePoint, what: Use) -> [f32; N] {
-        const { assert!(N <= 3, "the fourth dimension of a use is not its own") };
+    fn points(&self, what: Use) -> Points {
         match self.kind {
-            SamplerKind::Independent => std::array::from_fn(|_| self.stream.uniform()),
-            SamplerKind::Sobol => {
-                let coordinates = point.coordinates(what.dimensions());
-                std::array::from_fn(|i| coordinates[i])
-            }
+            SamplerKind::Independent => Points::None,
+            SamplerKind::ArrayQmc if !what.is_of_camera() => Points::Lattice,
+            SamplerKind::Sobol | SamplerKind::ArrayQmc => Points::Sobol,
         }
     }
 
-    /// As [`Self::numbers`] for each of the first `points`, `count` of them: `lanes` has one array per number, and a lane for each
-    /// point.
+    /// Up to three numbers in \[0, 1) for what each of the first `points`, `count` of them, does with them: `lanes` has one array per
+    /// number, and a lane for each point.
     #[inline(always)]
     pub fn fill<const N: usize, const LANES: usize>(
         &mut self,
@@ -139,17 +161,26 @@ impl Sampler {
         what: Use,
         mut lanes: [&mut [f32; LANES]; N],
     ) {
-        match self.kind {
-            SamplerKind::Independent => {
+        const { assert!(N <= 3, "the fourth dimension of a use is not its own") };
+        let set = what.dimensions();
+        match self.points(what) {
+            Points::None => {
                 for lanes in &mut lanes {
                     self.stream.fill_uniform(&mut lanes[..count]);
                 }
             }
-            SamplerKind::Sobol => {
+            Points::Sobol => {
                 for (lane, &point) in points[..count].iter().enumerate() {
-                    let coordinates = point.coordinates(what.dimensions());
-                    for (lanes, coordinate) in lanes.iter_mut().zip(coordinates) {
+                    for (lanes, coordinate) in lanes.iter_mut().zip(point.coordinates(set)) {
                         lanes[lane] = coordinate;
+                    }
+                }
+            }
+            Points::Lattice => {
+                for (lane, &point) in points.iter().enumerate() {
+                    let coordinates = lattice_coordinates::<N>(point, set);
+                    for (lanes, coordinate) in lanes.iter_mut().zip(coordinates) {
+                        lanes[lane] = to_uniform(coordinate);
                     }
                 }
             }
@@ -159,10 +190,21 @@ impl Sampler {
     /// A number in \[0, 1) with which the particle at `point` draws one of the materials that are mixed where it arrives after
     /// `depth` reflections.
     pub fn material_choice(&mut self, point: SequencePoint, depth: u32) -> f32 {
-        match self.kind {
-            SamplerKind::Independent => self.stream.uniform(),
-            SamplerKind::Sobol => point.coordinate(Use::Direction(depth).dimensions(), 3),
+        let what = Use::Direction(depth);
+        match self.points(what) {
+            Points::None => self.stream.uniform(),
+            Points::Sobol => point.coordinate(what.dimensions(), 3),
+            Points::Lattice => to_uniform(lattice_coordinate(point, what.dimensions(), 3)),
         }
+    }
+
+    /// By which numbers the particles at `points` decide about their children, if not by those of the stream.
+    pub fn decisions<'p>(&self, points: &'p [SequencePoint]) -> Option<Decisions<'p>> {
+        let kind = self.points(Use::Light(0));
+        (kind != Points::None).then_some(Decisions {
+            points,
+            is_lattice: kind == Points::Lattice,
+        })
     }
 
     /// The stream of independent numbers.
@@ -171,14 +213,36 @@ impl Sampler {
     }
 }
 
-/// 32 random bits with which the particle at `point` decides about its children after `depth` reflections.
-#[inline]
-pub fn decision(point: SequencePoint, depth: u32, random: &mut RandomStream) -> u32 {
-    let coordinate = point.coordinate(Use::Light(depth).dimensions(), 3);
-    let high = (coordinate * (1 << COORDINATE_BITS) as f32) as u32;
-    // A child that is less probable than the coordinate's last bit must stay possible.
-    let low = random.bits() >> COORDINATE_BITS;
-    high << (u32::BITS - COORDINATE_BITS) | low
+/// Where the particles of a population stand in their sequences: those who decide alone do so by these.
+#[derive(Clone, Copy, Debug)]
+pub struct Decisions<'p> {
+    points: &'p [SequencePoint],
+    is_lattice: bool,
+}
+
+impl Decisions<'_> {
+    /// For how many particles there are points.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// 32 random bits with which particle number `index` decides about its children after `depth` reflections.
+    #[inline]
+    pub fn bits(&self, index: usize, depth: u32, random: &mut RandomStream) -> u32 {
+        let (point, set) = (self.points[index], Use::Light(depth).dimensions());
+        if self.is_lattice {
+            return lattice_coordinate(point, set, 3);
+        }
+        let high = (point.coordinate(set, 3) * (1 << COORDINATE_BITS) as f32) as u32;
+        // A child that is less probable than the coordinate's last bit must stay possible.
+        let low = random.bits() >> COORDINATE_BITS;
+        high << (u32::BITS - COORDINATE_BITS) | low
+    }
 }
 
 #[cfg(test)]
@@ -191,48 +255,64 @@ mod tests {
         pass: 3,
     };
 
+    /// `N` numbers for what the path at `point` does with them.
+    fn numbers<const N: usize>(sampler: &mut Sampler, point: SequencePoint, what: Use) -> [f32; N] {
+        let mut lanes = [[0.0; 1]; N];
+        sampler.fill(&[point], 1, what, lanes.each_mut());
+        lanes.map(|[number]| number)
+    }
+
     #[test]
     fn independent_numbers_are_the_streams() {
-        let mut sampler = Sampler::new(SamplerKind::Independent, KEY);
+        let mut sampler = Sampler::new(SamplerKind::Independent, KEY, 0);
         let mut stream = RandomStream::new(KEY);
         let point = sampler.point(4, 5);
-        let drawn: [f32; 3] = sampler.numbers(point, Use::Camera);
+        let drawn: [f32; 3] = numbers(&mut sampler, point, Use::Camera);
         assert_eq!(drawn, [(); 3].map(|()| stream.uniform()));
+        assert!(sampler.decisions(&[point]).is_none() && sampler.ranks().is_none());
         assert_eq!(sampler.stream().bits(), stream.bits());
     }
 
     /// Every use has dimensions that no other has, and the walk's decision one of its own.
     #[test]
     fn uses_do_not_share_dimensions() {
-        let mut sampler = Sampler::new(SamplerKind::Sobol, KEY);
-        let point = sampler.point(4, 5);
-        let mut all: Vec<f32> = Vec::new();
-        for what in [
-            Use::Camera,
-            Use::Lens,
-            Use::Light(0),
-            Use::Direction(0),
-            Use::Light(1),
-            Use::Direction(1),
-        ] {
-            all.extend(sampler.numbers::<3>(point, what));
+        for kind in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
+            let mut sampler = Sampler::new(kind, KEY, 5);
+            let point = sampler.point(4, 0);
+            let mut all: Vec<f32> = Vec::new();
+            for what in [
+                Use::Camera,
+                Use::Lens,
+                Use::Light(0),
+                Use::Direction(0),
+                Use::Light(1),
+                Use::Direction(1),
+            ] {
+                all.extend(numbers::<3>(&mut sampler, point, what));
+            }
+            for depth in 0..2 {
+                let bits = decide(&mut sampler, point, depth);
+                all.push((bits >> 9) as f32 / (1 << COORDINATE_BITS) as f32);
+                all.push(sampler.material_choice(point, depth));
+            }
+            for (index, one) in all.iter().enumerate() {
+                assert!(!all[..index].contains(one), "{kind}: {index}");
+            }
         }
-        for depth in 0..2 {
-            let bits = decision(point, depth, sampler.stream());
-            all.push((bits >> 9) as f32 / (1 << COORDINATE_BITS) as f32);
-            all.push(sampler.material_choice(point, depth));
-        }
-        for (index, one) in all.iter().enumerate() {
-            assert!(!all[..index].contains(one), "{index}");
-        }
+    }
+
+    fn decide(sampler: &mut Sampler, point: SequencePoint, depth: u32) -> u32 {
+        let points = [point];
+        let decisions = sampler.decisions(&points).expect("there are points");
+        decisions.bits(0, depth, sampler.stream())
     }
 
     /// The bits that a coordinate does not have are random: without them, what is less probable than 2^-23 could not happen.
     #[test]
     fn decisions_have_32_random_bits() {
-        let mut sampler = Sampler::new(SamplerKind::Sobol, KEY);
+        let mut sampler = Sampler::new(SamplerKind::Sobol, KEY, 0);
         let point = sampler.point(4, 5);
-        let drawn = [(); 4096].map(|()| decision(point, 0, sampler.stream()));
+        let drawn = [(); 4096].map(|()| decide(&mut sampler, point, 0));
         let low: std::collections::BTreeSet<u32> = drawn.iter().map(|bits| bits & 511).collect();
         assert!(low.len() > 500, "{}", low.len());
         assert!(drawn.iter().all(|bits| bits >> 9 == drawn[0] >> 9));
@@ -243,14 +323,30 @@ mod tests {
     fn passes_share_a_sequence() {
         let mut parts = [0; 16];
         for pass in 0..2 {
-            let mut sampler = Sampler::new(SamplerKind::Sobol, StreamKey { pass, ..KEY });
-            for index in 8 * u64::from(pass)..8 * (u64::from(pass) + 1) {
-                let point = sampler.point(0, index);
-                let [u] = sampler.numbers(point, Use::Direction(3));
+            let key = StreamKey { pass, ..KEY };
+            let mut sampler = Sampler::new(SamplerKind::Sobol, key, 8 * u64::from(pass));
+            for sample in 0..8 {
+                let point = sampler.point(0, sample);
+                let [u] = numbers(&mut sampler, point, Use::Direction(3));
                 parts[(u * 16.0) as usize] += 1;
             }
         }
         assert_eq!(parts, [1; 16]);
+    }
+
+    /// The particles of a pixel are numbered from its samples in earlier passes on, and pixels have lattices of their own.
+    #[test]
+    fn ranks_go_on_from_pass_to_pass() {
+        let ranks = |before, pixels: &[u32]| {
+            let mut ranks = Sampler::new(SamplerKind::ArrayQmc, KEY, before)
+                .ranks()
+                .expect("it sorts");
+            pixels.iter().map(|&pixel| ranks.next(pixel)).collect()
+        };
+        let whole: Vec<SequencePoint> = ranks(0, &[7, 7, 7, 7, 8, 8]);
+        let later: Vec<SequencePoint> = ranks(2, &[7, 7]);
+        assert_eq!(whole[2..4], later);
+        assert!(whole[..4].iter().all(|point| !whole[4..].contains(point)));
     }
 
     #[test]
@@ -259,6 +355,6 @@ mod tests {
             assert_eq!(kind.to_string().parse::<SamplerKind>().unwrap(), kind);
         }
         let message = "halton".parse::<SamplerKind>().unwrap_err().to_string();
-        assert!(message.contains("halton") && message.contains("sobol"));
+        assert!(message.contains("halton") && message.contains("array-qmc"));
     }
 }

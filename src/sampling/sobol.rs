@@ -22,12 +22,8 @@ pub struct SequencePoint {
 impl SequencePoint {
     /// Point number `index` of the sequence that the words of `key` name.
     pub fn new(key: [u32; 4], index: u64) -> Self {
-        let [a, b, c, d] = key;
-        let scramble = [a, b, c, d, (index >> INDEX_BITS) as u32]
-            .into_iter()
-            .fold(0, hash);
         Self {
-            scramble,
+            scramble: hash(scramble(key), (index >> INDEX_BITS) as u32),
             index: index as u32 & ((1 << INDEX_BITS) - 1),
         }
     }
@@ -45,6 +41,34 @@ impl SequencePoint {
             scramble: hash(hash(self.scramble, depth), child),
             ..self
         }
+    }
+
+    /// The point of this rank in the lattices of a scramble (see [`lattice`](super::lattice)).
+    #[inline]
+    pub fn ranked(scramble: u32, rank: u32) -> Self {
+        Self {
+            scramble,
+            index: rank,
+        }
+    }
+
+    /// The point of the rank that follows.
+    #[inline(always)]
+    pub(super) fn successor(self) -> Self {
+        Self {
+            index: self.index.wrapping_add(1),
+            ..self
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn scramble(self) -> u32 {
+        self.scramble
+    }
+
+    #[inline(always)]
+    pub(super) fn index(self) -> u32 {
+        self.index
     }
 
     /// Four coordinates in \[0, 1), with [`COORDINATE_BITS`] bits each: dimensions 4 `set` to 4 `set` + 3.
@@ -72,9 +96,14 @@ impl SequencePoint {
     }
 }
 
+/// What the words of `key` name.
+pub(super) fn scramble(key: [u32; 4]) -> u32 {
+    key.into_iter().fold(0, hash)
+}
+
 /// Mixes `word` into `state`: the finaliser of MurmurHash3 over both.
-#[inline]
-fn hash(state: u32, word: u32) -> u32 {
+#[inline(always)]
+pub(super) fn hash(state: u32, word: u32) -> u32 {
     let mut h = state
         .rotate_left(13)
         .wrapping_mul(5)

@@ -194,7 +194,7 @@ mod tests {
             ("roulette:threshold=x", "not a number"),
             ("throughput-roulette:from-depth=1.5", "not a whole number"),
             ("roulette:size=3", "no strategy has a setting `size`"),
-            ("roulette:sampler=halton", "independent and sobol"),
+            ("roulette:sampler=halton", "sobol and array-qmc"),
             ("roulette:n-max=3", "n-max"),
             ("roulette:termination=1.5", "termination"),
         ] {

@@ -1,11 +1,13 @@
 //! Path states as structures of arrays. Buffers are kept between batches: after the first, nothing is allocated.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::variant::Variant;
 use crate::embree::{Hits, Rays};
 use crate::lanes::{CHUNK, VectorColumn};
-use crate::room::{make_room, resize};
+use crate::room::{gather, make_room, resize};
 use crate::sampling::{SequencePoint, SolidAnglePdf};
 use crate::scene::{HitCoordinates, Refraction};
 use crate::spectrum::Colour;
@@ -13,6 +15,10 @@ use crate::spectrum::Colour;
 /// The camera paths of a batch: what all particles that descend from one have in common. Paths of one pixel stand side
 /// by side.
 pub(super) struct CameraPaths<C: Colour> {
+    /// Which pixels of the tile they belong to.
+    pub pixels: Range<u32>,
+    /// How many belong to each of those.
+    pub samples: u32,
     /// The wavelengths that the path carries.
     pub wavelengths: Vec<C::Wavelengths>,
     /// How they were chosen.
@@ -98,6 +104,8 @@ pub(super) struct Particles {
 impl<C: Colour> CameraPaths<C> {
     pub fn new() -> Self {
         Self {
+            pixels: 0..0,
+            samples: 1,
             wavelengths: Vec::new(),
             wavelength_draw: Vec::new(),
             radiance: Vec::new(),
@@ -106,12 +114,22 @@ impl<C: Colour> CameraPaths<C> {
         }
     }
 
-    /// Empties the paths and makes room for `count`.
-    pub fn restart(&mut self, count: usize) {
+    /// Empties the paths and makes room for `samples` of each of the `pixels`; returns how many that are.
+    pub fn restart(&mut self, pixels: Range<u32>, samples: u32) -> usize {
+        let count = pixels.len() * samples as usize;
+        self.pixels = pixels;
+        self.samples = samples;
         make_room(&mut self.wavelengths, count);
         make_room(&mut self.wavelength_draw, count);
         make_room(&mut self.radiance, count);
         make_room(&mut self.filter_weight, count);
+        count
+    }
+
+    /// The pixel of the tile to which a path belongs.
+    #[inline(always)]
+    pub fn pixel(&self, path: u32) -> u32 {
+        self.pixels.start + path / self.samples
     }
 }
 
@@ -147,6 +165,36 @@ impl<C: Colour> Segments<C> {
     /// Makes room for the surfaces that `count` rays leave.
     pub fn remember_origins(&mut self, count: usize) {
         make_room(&mut self.origins, count);
+    }
+
+    /// Becomes those of `source` in another order: number `order[i]` in place i.
+    pub fn gather(&mut self, source: &Self, order: &[u32]) {
+        gather(&mut self.path, &source.path, order);
+        gather(&mut self.throughput, &source.throughput, order);
+        gather(&mut self.point, &source.point, order);
+        gather(&mut self.refraction, &source.refraction, order);
+        gather(&mut self.direction_pdf, &source.direction_pdf, order);
+        gather(&mut self.origins, &source.origins, order);
+        self.rays.gather(&source.rays, order);
+        self.hits.gather(&source.hits, order);
+    }
+
+    /// The end of a ray, in world space: where it met its shape, if it met one.
+    #[inline]
+    pub fn end(&self, index: usize) -> Vec3 {
+        let direction = Vec3::from(self.rays.direction(index));
+        Vec3::from(self.rays.origin(index)) + self.rays.tfar(index) * direction
+    }
+
+    /// The geometric normal, of any length, of the side that a ray met; in the space of the group where that stands in an instance.
+    #[inline]
+    pub fn facing(&self, index: usize) -> Vec3 {
+        let normal = Vec3::from(self.hits.normal(index));
+        if normal.dot(self.rays.direction(index).into()) > 0.0 {
+            -normal
+        } else {
+            normal
+        }
     }
 
     /// Where a ray met its shape, if it met one.

@@ -1,5 +1,7 @@
 //! Stage: camera paths start.
 
+use std::ops::Range;
+
 use glam::Vec2;
 use multiversion::multiversion;
 
@@ -12,7 +14,7 @@ use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
 use crate::scene::{CameraRayLanes, Refraction};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
-/// Starts `job.samples` paths for every pixel of the tile, pixel by pixel.
+/// Starts `job.samples` paths for each of the `pixels` of the tile, pixel by pixel.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -21,6 +23,7 @@ pub(super) fn start<C: Colour, V: Variant>(
     engine: &Engine,
     job: &TileJob,
     tile: &FilmTile,
+    pixels: Range<u32>,
     sampler: &mut Sampler,
     paths: &mut CameraPaths<C>,
     segments: &mut Segments<C>,
@@ -28,9 +31,7 @@ pub(super) fn start<C: Colour, V: Variant>(
     let has_lens = engine.camera.has_lens();
     let crop = engine.scene.film.crop;
     let corner = Vec2::new(crop.x as f32, crop.y as f32);
-    let samples = job.samples as usize;
-    let count = tile.pixels.count() * samples;
-    paths.restart(count);
+    let count = paths.restart(pixels.clone(), job.samples);
     segments.restart(count);
     let mut points = [SequencePoint::default(); CHUNK];
     let mut numbers = [[0.0; CHUNK]; 3];
@@ -38,13 +39,13 @@ pub(super) fn start<C: Colour, V: Variant>(
     let mut lens_numbers = [[0.5; CHUNK]; 2];
     let mut raster = [[0.0; CHUNK]; 2];
     let mut rays = CameraRayLanes::new();
-    let (mut pixel, mut sample) = (0, 0);
+    let (mut pixel, mut sample) = (pixels.start, 0);
     for start in (0..count).step_by(CHUNK) {
         let chunk = start..count.min(start + CHUNK);
         if sampler.has_sequences() {
             for (point, path) in points.iter_mut().zip(chunk.clone()) {
-                let (pixel, sample) = (path / samples, path % samples);
-                *point = sampler.point(pixel as u32, job.first_sample + sample as u64);
+                let path = path as u32;
+                *point = sampler.point(paths.pixel(path), path % job.samples);
             }
             segments.point.extend_from_slice(&points[..chunk.len()]);
         }

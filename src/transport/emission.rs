@@ -39,6 +39,7 @@ pub(super) fn arrive<C: Colour, V: Variant>(
     if has_instances {
         make_room(&mut vertices.clearance, segments.len());
     }
+    let mut ranks = sampler.ranks();
     let mut surfaces = SurfaceChunk::new();
     let mut sides = SideChunk::new();
     for start in (0..segments.len()).step_by(CHUNK) {
@@ -78,7 +79,10 @@ pub(super) fn arrive<C: Colour, V: Variant>(
         vertices
             .throughput
             .extend(kept.clone().map(|i| segments.throughput[i]));
-        if sampler.has_sequences() {
+        if let Some(ranks) = &mut ranks {
+            let points = kept.map(|i| ranks.next(paths.pixel(segments.path[i])));
+            vertices.point.extend(points);
+        } else if sampler.has_sequences() {
             vertices.point.extend(kept.map(|i| segments.point[i]));
         }
         let points = &surfaces.points;

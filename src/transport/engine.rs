@@ -8,10 +8,10 @@ use super::emission_table::EmissionTable;
 use super::settings::TransportSettings;
 use crate::embree::Version;
 use crate::film::FilterSampler;
-use crate::sampling::StreamKey;
+use crate::sampling::{SamplerKind, StreamKey};
 use crate::scene::{CameraView, Emitter, Instance, LightChoice, Parallelogram, Scene};
 use crate::spectrum::Colour;
-use crate::walk::Strategy;
+use crate::walk::{Scope, Strategy};
 
 /// A scene ready to be traced, shared by all threads.
 pub struct Engine {
@@ -84,6 +84,12 @@ impl Engine {
     /// The version of the intersection layer's library.
     pub fn embree_version(&self) -> Version {
         self.accelerator.scene().device().version()
+    }
+
+    /// Whether the particles of a pixel are sorted at every bounce. The offspring of one camera path, and tiles, stay together.
+    pub(super) fn sorts(&self) -> bool {
+        self.settings.sampler == SamplerKind::ArrayQmc
+            && matches!(self.strategy.scope(), Scope::Particle | Scope::Pixel)
     }
 
     /// The instance in which segment `i` met a surface, if it did in one.

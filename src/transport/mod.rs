@@ -12,6 +12,7 @@
 //! and their rays are neighbours in the stream.
 
 mod accelerator;
+mod arrange;
 mod batch;
 mod camera;
 mod direct;

@@ -1,5 +1,8 @@
 //! One batch from the camera to its end.
 
+use std::ops::Range;
+
+use super::arrange::Arrangement;
 use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
 use super::engine::{Engine, TileJob};
 use super::recorded_rays::RecordedRays;
@@ -17,9 +20,14 @@ use crate::walk::Offspring;
 /// After so many bounces a batch is cut off and the cut is reported: only light that never dies gets here.
 const MAX_BOUNCES: u32 = 1 << 16;
 
+/// The most camera paths of a batch in which populations are sorted, but that of one pixel stays whole: so many fit the cache, and more do
+/// not make rays faster.
+const BATCH: u32 = 4096;
+
 /// The stages in a row, and the memory of one thread: it traces batch after batch.
 pub(super) struct Pipeline<C: Colour, V: Variant> {
     paths: CameraPaths<C>,
+    arrangement: Arrangement<C>,
     segments: Segments<C>,
     vertices: Vertices<C, V>,
     shadow: ShadowRays<C>,
@@ -35,6 +43,7 @@ impl<C: Colour, V: Variant> Default for Pipeline<C, V> {
     fn default() -> Self {
         Self {
             paths: CameraPaths::new(),
+            arrangement: Arrangement::default(),
             segments: Segments::new(),
             vertices: Vertices::new(),
             shadow: ShadowRays::new(),
@@ -47,21 +56,43 @@ impl<C: Colour, V: Variant> Default for Pipeline<C, V> {
 }
 
 impl<C: Colour, V: Variant> Pipeline<C, V> {
-    /// Traces a batch and adds its samples to the pixels of `tile`.
+    /// Traces a tile's samples of a pass and adds them to its pixels, batch by batch.
     pub fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
+        let mut sampler = Sampler::new(engine.settings.sampler, job.key, job.first_sample);
+        let pixels = tile.pixels.count() as u32;
+        let batch = if engine.sorts() {
+            (BATCH / job.samples).max(1)
+        } else {
+            pixels
+        };
+        for first in (0..pixels).step_by(batch as usize) {
+            let pixels = first..pixels.min(first + batch);
+            self.trace_pixels(engine, job, tile, pixels, &mut sampler);
+        }
+    }
+
+    /// Traces one batch: that of some pixels of the tile.
+    fn trace_pixels(
+        &mut self,
+        engine: &Engine,
+        job: &TileJob,
+        tile: &mut FilmTile,
+        pixels: Range<u32>,
+        sampler: &mut Sampler,
+    ) {
         let mut stopwatch = Stopwatch::start();
-        let mut sampler = Sampler::new(engine.settings.sampler, job.key);
         camera::start::<C, V>(
             engine,
             job,
             tile,
-            &mut sampler,
+            pixels,
+            sampler,
             &mut self.paths,
             &mut self.segments,
         );
         stopwatch.lap(Stage::Camera, &mut self.statistics.stages);
-        self.follow(engine, job, &mut sampler, &mut stopwatch);
-        splat::expose(engine, job, &self.paths, tile, &mut self.statistics.dropped);
+        self.follow(engine, job, sampler, &mut stopwatch);
+        splat::expose(engine, &self.paths, tile, &mut self.statistics.dropped);
         stopwatch.lap(Stage::Splat, &mut self.statistics.stages);
         self.statistics.camera_paths += self.paths.radiance.len() as u64;
     }
@@ -104,6 +135,10 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 hidden_emitters::look_through(engine, &mut self.segments, &mut self.statistics);
             }
             stopwatch.lap(Stage::Intersect, &mut self.statistics.stages);
+            if engine.sorts() {
+                self.arrangement.arrange(job.samples, &mut self.segments);
+                stopwatch.lap(Stage::Arrange, &mut self.statistics.stages);
+            }
             let scatters = depth + 1 < max_depth;
             emission::arrive(
                 engine,
@@ -151,6 +186,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             stopwatch.lap(Stage::Walk, &mut self.statistics.stages);
             scatter::scatter(
                 engine,
+                &self.paths,
                 &self.vertices,
                 self.offspring.children(),
                 depth,

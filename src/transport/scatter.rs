@@ -2,7 +2,7 @@
 
 use multiversion::multiversion;
 
-use super::batch::{Segments, Vertices};
+use super::batch::{CameraPaths, Segments, Vertices};
 use super::engine::Engine;
 use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant};
@@ -20,6 +20,7 @@ use crate::walk::Child;
 ))]
 pub(super) fn scatter<C: Colour, V: Variant>(
     engine: &Engine,
+    paths: &CameraPaths<C>,
     vertices: &Vertices<C, V>,
     children: &[Child],
     depth: u32,
@@ -31,6 +32,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     if light_is_chosen {
         segments.remember_origins(children.len());
     }
+    let mut ranks = sampler.ranks();
     let mut elders = ElderSiblings::default();
     let mut points = [SequencePoint::default(); CHUNK];
     let mut numbers = [[0.0; CHUNK]; 3];
@@ -42,7 +44,11 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         for (lane, child) in children.iter().enumerate() {
             normals.put(lane, vertices.normal.get(child.parent as usize));
         }
-        if sampler.has_sequences() {
+        if let Some(ranks) = &mut ranks {
+            for (point, child) in points.iter_mut().zip(children) {
+                *point = ranks.next(paths.pixel(vertices.path[child.parent as usize]));
+            }
+        } else if sampler.has_sequences() {
             for (point, child) in points.iter_mut().zip(children) {
                 let parent = vertices.point[child.parent as usize];
                 *point = parent.branch(elders.before(child), depth);

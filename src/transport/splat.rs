@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use super::batch::CameraPaths;
-use super::engine::{Engine, TileJob};
+use super::engine::Engine;
 use super::statistics::DroppedSamples;
 use crate::film::{Accumulator, FilmTile, PixelStatistics, SecondMoments, TilePixels};
 use crate::sampling::SamplerKind;
@@ -13,7 +13,6 @@ use crate::walk::Scope;
 /// Adds every path to its pixel of the tile; those that carry no radiance count as black there, and in `dropped`.
 pub(super) fn expose<C: Colour>(
     engine: &Engine,
-    job: &TileJob,
     paths: &CameraPaths<C>,
     tile: &mut FilmTile,
     dropped: &mut DroppedSamples,
@@ -22,29 +21,29 @@ pub(super) fn expose<C: Colour>(
     let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile)
         || engine.settings.sampler != SamplerKind::Independent;
     match &mut tile.pixels {
-        TilePixels::Single(pixels) => expose_pixels(paths, joint, pixels, job.samples, dropped),
-        TilePixels::Double(pixels) => expose_pixels(paths, joint, pixels, job.samples, dropped),
+        TilePixels::Single(pixels) => expose_pixels(paths, joint, pixels, dropped),
+        TilePixels::Double(pixels) => expose_pixels(paths, joint, pixels, dropped),
         TilePixels::Compensated(pixels) => {
-            expose_pixels(paths, joint, pixels, job.samples, dropped);
+            expose_pixels(paths, joint, pixels, dropped);
         }
     }
     if let Some(moments) = &mut tile.second_moments {
-        expose_moments(paths, job.samples, moments);
+        expose_moments(paths, moments);
     }
 }
 
-/// Adds the squares of `samples` paths to each pixel.
-fn expose_moments<C: Colour>(paths: &CameraPaths<C>, samples: u32, moments: &mut SecondMoments) {
+/// Adds the squares of the paths to their pixels.
+fn expose_moments<C: Colour>(paths: &CameraPaths<C>, moments: &mut SecondMoments) {
     for path in 0..paths.radiance.len() {
         if let Some(rgb) = rgb(paths, path) {
             let weight = f64::from(paths.filter_weight[path]);
             let xyz = xyz_from_srgb(rgb.map(f64::from));
-            moments.add(path / samples as usize, xyz, weight);
+            moments.add(paths.pixel(path as u32) as usize, xyz, weight);
         }
     }
 }
 
-/// Adds `samples` paths to each pixel: as one unit where they are `joint`.
+/// Adds the paths to their pixels: those of a pixel as one unit where they are `joint`.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -53,11 +52,11 @@ fn expose_pixels<C: Colour, A: Accumulator>(
     paths: &CameraPaths<C>,
     joint: bool,
     pixels: &mut [PixelStatistics<A>],
-    samples: u32,
     dropped: &mut DroppedSamples,
 ) {
+    let samples = paths.samples;
     let mut path = 0;
-    for pixel in pixels {
+    for pixel in &mut pixels[paths.pixels.start as usize..paths.pixels.end as usize] {
         // A copy can stay in registers.
         let mut statistics = *pixel;
         let mut sum = [A::default(); 3];

@@ -12,6 +12,8 @@ pub enum Stage {
     Camera,
     /// Rays are traced: segments, shadow rays, and what looks through hidden emitters.
     Intersect,
+    /// The particles of a pixel are sorted, for samplers that want that.
+    Arrange,
     /// Paths arrive at surfaces and lights.
     Emission,
     /// Light is drawn, and added where it arrives.
@@ -26,9 +28,10 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Camera,
         Self::Intersect,
+        Self::Arrange,
         Self::Emission,
         Self::Direct,
         Self::Walk,
@@ -41,6 +44,7 @@ impl Stage {
         match self {
             Self::Camera => "camera",
             Self::Intersect => "intersect",
+            Self::Arrange => "arrange",
             Self::Emission => "emission",
             Self::Direct => "direct",
             Self::Walk => "walk",

@@ -34,7 +34,7 @@ pub(super) fn decide<C: Colour, V: Variant>(
         shininess: &particles.shininess,
         group: &particles.group,
         depth,
-        points: sampler.has_sequences().then_some(&vertices.point),
+        points: sampler.decisions(&vertices.point),
     };
     strategy.resample(&population, sampler.stream(), offspring)
 }

@@ -4,7 +4,7 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
-use crate::sampling::SequencePoint;
+use crate::sampling::Decisions;
 
 /// What a strategy may know of the particles of a batch: one entry per particle in every slice.
 ///
@@ -25,7 +25,7 @@ pub struct Population<'a> {
     pub depth: u32,
     /// Where the particles stand in sequences of evenly spread points, if they do: those who decide alone do so by
     /// these. Without them, all decisions are independent.
-    pub points: Option<&'a [SequencePoint]>,
+    pub points: Option<Decisions<'a>>,
 }
 
 impl Population<'_> {
@@ -41,7 +41,7 @@ impl Population<'_> {
 
     /// Whether every slice has one entry per particle.
     pub(super) fn is_complete(&self) -> bool {
-        let points = self.points.map_or(self.len(), <[SequencePoint]>::len);
+        let points = self.points.map_or(self.len(), |points| points.len());
         [
             self.albedo.len(),
             self.shininess.len(),

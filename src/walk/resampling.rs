@@ -27,7 +27,7 @@ use std::str::FromStr;
 use serde::{Serialize, Serializer};
 
 use super::{Child, ExpectedCount, Population, SettingError};
-use crate::sampling::{RandomStream, decision};
+use crate::sampling::RandomStream;
 
 /// A way of drawing integers with given means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,7 +131,7 @@ fn independently(
 ) {
     for (parent, &nu) in (0..).zip(nu) {
         let count = nu.round(|| match population.points {
-            Some(points) => decision(points[parent as usize], population.depth, random),
+            Some(points) => points.bits(parent as usize, population.depth, random),
             None => random.bits(),
         });
         bear(children, parent, nu, count);
