@@ -68,6 +68,7 @@
 pub mod embree;
 pub mod film;
 mod lanes;
+pub mod learning;
 pub mod models;
 pub mod render;
 mod room;

@@ -35,6 +35,7 @@ pub fn run(arguments: &AccuracyArgs) -> Result<ExitCode, Box<dyn Error>> {
             strategy: arguments.strategy.strategy,
             options: arguments.strategy.options,
             sampler: arguments.strategy.sampler.unwrap_or(base.sampler),
+            guiding: arguments.strategy.guiding.unwrap_or(base.guiding),
             ..base
         };
         let axes = if arguments.settings.is_empty() {

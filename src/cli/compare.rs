@@ -38,6 +38,7 @@ pub fn run(arguments: &CompareArgs) -> Result<ExitCode, Box<dyn Error>> {
                 strategy: spec.strategy,
                 options: spec.options,
                 sampler: spec.sampler.unwrap_or(base.sampler),
+                guiding: spec.guiding.unwrap_or(base.guiding),
                 ..base.clone()
             }),
             variation: None,

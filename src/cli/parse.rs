@@ -59,3 +59,19 @@ pub fn parse_definition(text: &str) -> Result<(String, String), String> {
         .map(|(name, value)| (name.to_owned(), value.to_owned()));
     pair.ok_or_else(|| "a definition is written name=value".to_owned())
 }
+
+/// On or off.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Switch {
+    /// Not done.
+    Off,
+    /// Done.
+    On,
+}
+
+impl Switch {
+    /// Whether it is on.
+    pub fn is_on(self) -> bool {
+        self == Self::On
+    }
+}

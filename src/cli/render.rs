@@ -17,7 +17,7 @@ use cohort::transport::DirectLight;
 
 use super::interrupt::stop_on_interrupt;
 use super::output::OutputFiles;
-use super::parse::{parse_count, parse_rays, parse_seed, parse_threads, parse_time};
+use super::parse::{Switch, parse_count, parse_rays, parse_seed, parse_threads, parse_time};
 use super::report::{Bar, summarise, warn_of_darkness};
 use super::scene_args::SceneArgs;
 use super::strategy_args::StrategyArgs;
@@ -67,6 +67,10 @@ pub struct RenderArgs {
     /// Where the random numbers of paths come from: independent, sobol or array-qmc
     #[arg(long, value_name = "NAME", default_value_t = SamplerKind::default())]
     sampler: SamplerKind,
+
+    /// Whether directions are guided by where light was found to come from
+    #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
+    guiding: Switch,
 
     /// How direct light is found
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Direct::NextEvent)]
@@ -202,6 +206,7 @@ impl RenderArgs {
                 Sums::Compensated => FilmSums::Compensated,
             },
             sampler: self.sampler,
+            guiding: self.guiding.is_on(),
             direct_light: match self.direct {
                 Direct::NextEvent => DirectLight::NextEvent,
                 Direct::Off => DirectLight::Off,

@@ -17,7 +17,7 @@ use cohort::study::{
 };
 
 use super::interrupt::stop_on_interrupt;
-use super::parse::{parse_count, parse_rays, parse_seed, parse_threads, parse_time};
+use super::parse::{Switch, parse_count, parse_rays, parse_seed, parse_threads, parse_time};
 use super::report::tell;
 use super::scene_args::SceneArgs;
 use super::study_bar::StudyBar;
@@ -81,6 +81,10 @@ pub struct StudyArgs {
     #[arg(long, value_name = "NAME", default_value_t = SamplerKind::default())]
     sampler: SamplerKind,
 
+    /// Whether directions are guided by where light was found to come from
+    #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
+    guiding: Switch,
+
     /// Measures beside MSE and relative MSE
     #[arg(long, value_name = "NAME", value_enum, value_delimiter = ',')]
     metrics: Vec<Metric>,
@@ -138,6 +142,7 @@ impl StudyArgs {
                 Settings::default().colour
             },
             sampler: self.sampler,
+            guiding: self.guiding.is_on(),
             ..EntrySettings::default()
         };
         let plan = Plan {

@@ -1,16 +1,16 @@
 //! Passes over tiles, until the budget is used up or somebody asks to stop.
 
 use std::num::{NonZeroU32, NonZeroUsize};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
 use thiserror::Error;
 
 use super::watch::{Watch, unpoisoned};
 use super::{Budget, Ended, Observer, Outcome, RenderState, Schedule, Settings, StopFlag, memory};
 use crate::embree::EmbreeError;
 use crate::film::Film;
+use crate::learning::{Experience, Gathering, Knowledge};
 use crate::sampling::StreamKey;
 use crate::scene::{Emitter, Scene};
 use crate::transport::{
@@ -169,7 +169,11 @@ impl Render {
         } else {
             film
         };
-        RenderState::new(film, seed)
+        let knowledge = self
+            .settings
+            .guiding
+            .then(|| Knowledge::nothing(self.engine.bounds(), size));
+        RenderState::new(film, knowledge, seed)
     }
 
     /// Whether [`advance`](Self::advance) can go on from `state`, which may come from a file: whether its image has the
@@ -209,8 +213,17 @@ impl Render {
                 if !state.pass.plan(schedule, until) {
                     break Ended::Complete;
                 }
-                self.trace_pass(state, &watch);
-                state.pass.finish();
+                let learns = state.knowledge.is_some() && schedule.teaches(state.pass.before);
+                self.trace_pass(state, learns, &watch);
+                if state.pass.finish()
+                    && learns
+                    && let Some(knowledge) = &mut state.knowledge
+                {
+                    knowledge.learn();
+                    if !schedule.teaches(state.pass.before) {
+                        knowledge.conclude();
+                    }
+                }
                 if let Some(ended) = watch.ended() {
                     break ended;
                 }
@@ -222,19 +235,28 @@ impl Render {
     }
 
     /// Traces what is left of a pass. Passes follow each other, so that every pixel adds up its passes in the same
-    /// order.
-    fn trace_pass(&self, state: &mut RenderState, watch: &Watch) {
+    /// order. Where the render `learns` from it, tiles are begun in their order, so that few wait for those before them.
+    fn trace_pass(&self, state: &mut RenderState, learns: bool, watch: &Watch) {
         let pass = &mut state.pass;
-        state
-            .film
-            .tiles_mut()
-            .par_iter_mut()
-            .zip(&mut pass.done)
-            .with_max_len(1)
-            .enumerate()
-            .filter(|(_, (_, done))| !**done)
-            .for_each(|(index, (tile, done))| {
-                let tracer = &self.tracers[rayon::current_thread_index().unwrap_or(0)];
+        let first = pass.done.iter().position(|done| !done).unwrap_or(0);
+        let experience = match &mut state.knowledge {
+            Some(knowledge) if learns => knowledge.take_experience(),
+            _ => Experience::default(),
+        };
+        let gathering = Mutex::new(Gathering::new(experience, first));
+        let knowledge = state.knowledge.as_ref();
+        let film = state.film.size();
+        let tiles = state.film.tiles_mut().iter_mut().zip(&mut pass.done);
+        let missing = tiles.enumerate().filter(|(_, (_, done))| !**done);
+        let missing = Mutex::new(missing.peekable());
+        rayon::broadcast(|context| {
+            let tracer = &mut **unpoisoned(&self.tracers[context.index()]);
+            loop {
+                let next = unpoisoned(&missing)
+                    .next_if(|(_, (tile, _))| watch.allows(tile, pass.samples));
+                let Some((index, (tile, done))) = next else {
+                    break;
+                };
                 let key = StreamKey {
                     seed: state.seed,
                     tile: index as u32,
@@ -244,8 +266,24 @@ impl Render {
                     key,
                     first_sample: pass.before,
                     samples: pass.samples,
+                    knowledge,
+                    learns,
                 };
-                *done = watch.trace(&self.engine, &job, tile, &mut **unpoisoned(tracer));
-            });
+                watch.trace(&self.engine, &job, tile, tracer);
+                *done = true;
+                if learns {
+                    let mut observations = tracer.take_observations();
+                    for pixel in &mut observations.pixels {
+                        let (x, y) = tile.position(pixel.pixel as usize);
+                        pixel.pixel = y * film.width + x;
+                    }
+                    unpoisoned(&gathering).add(index, observations);
+                }
+            }
+        });
+        if learns && let Some(knowledge) = &mut state.knowledge {
+            let gathering = gathering.into_inner().unwrap_or_else(PoisonError::into_inner);
+            knowledge.give_back(gathering.into_experience());
+        }
     }
 }

@@ -7,6 +7,9 @@ use crate::sampling::SamplerKind;
 /// population (a quarter and four times as many were not faster or slower beyond noise).
 const FULL_PASS: u32 = 16;
 
+/// The most samples per pixel from which a render learns.
+const LESSONS: u32 = 32;
+
 /// The most samples per pixel of a pass that grows.
 const LARGEST_PASS: u32 = 256;
 
@@ -45,6 +48,19 @@ impl Schedule {
         whole
             .min(missing(self.budget, before))
             .min(missing(until, before))
+    }
+
+    /// Whether a render that learns does so from a pass before which every pixel has had so many samples: from the first quarter of a given
+    /// number, and never from more than [`LESSONS`].
+    pub fn teaches(&self, before: u64) -> bool {
+        before < u64::from(self.lessons())
+    }
+
+    fn lessons(&self) -> u32 {
+        match self.budget {
+            Budget::SamplesPerPixel(total) => LESSONS.min(total.get() / 4),
+            Budget::Time(_) | Budget::Rays(_) => LESSONS,
+        }
     }
 
     /// The size of a full pass for pixels of so many samples.

@@ -89,6 +89,8 @@ pub struct Settings {
     pub film_sums: FilmSums,
     /// Where the random numbers of paths come from.
     pub sampler: SamplerKind,
+    /// Whether directions are guided by what was learned of where light comes from.
+    pub guiding: bool,
     /// How direct light is found.
     pub direct_light: DirectLight,
     /// Most segments of a path, camera ray included; `None` takes what the scene says.
@@ -111,6 +113,7 @@ impl Default for Settings {
             colour: ColourMode::default(),
             film_sums: FilmSums::default(),
             sampler: SamplerKind::default(),
+            guiding: false,
             direct_light: DirectLight::default(),
             max_depth: None,
             robust: false,

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Budget, Schedule};
 use crate::film::Film;
+use crate::learning::Knowledge;
 use crate::transport::TraceStatistics;
 
 /// A render under way: what [`Render::advance`](super::Render::advance) goes on from.
@@ -16,6 +17,8 @@ use crate::transport::TraceStatistics;
 pub struct RenderState {
     pub(super) seed: u64,
     pub(super) film: Film,
+    /// Of a render that learns.
+    pub(super) knowledge: Option<Knowledge>,
     pub(super) pass: Pass,
     pub(super) statistics: TraceStatistics,
     pub(super) duration: Duration,
@@ -76,7 +79,7 @@ pub struct Outcome {
 
 impl RenderState {
     /// A render onto `film` that has not traced anything.
-    pub(super) fn new(film: Film, seed: u64) -> Self {
+    pub(super) fn new(film: Film, knowledge: Option<Knowledge>, seed: u64) -> Self {
         Self {
             seed,
             pass: Pass {
@@ -86,6 +89,7 @@ impl RenderState {
                 done: vec![false; film.tiles().len()],
             },
             film,
+            knowledge,
             statistics: TraceStatistics::default(),
             duration: Duration::ZERO,
         }
@@ -134,12 +138,14 @@ impl Pass {
         samples > 0
     }
 
-    /// Goes to the next pass if all tiles are done.
-    pub fn finish(&mut self) {
-        if !self.done.contains(&false) {
+    /// Goes to the next pass if all tiles are done. Returns whether they are.
+    pub fn finish(&mut self) -> bool {
+        let is_done = !self.done.contains(&false);
+        if is_done {
             self.index += 1;
             self.before += u64::from(self.samples);
             self.done.fill(false);
         }
+        is_done
     }
 }

@@ -69,18 +69,20 @@ impl<'a> Watch<'a> {
         self.before + self.start.elapsed()
     }
 
-    /// Traces a batch, unless it is time to stop. Returns whether it did.
+    /// Whether `samples` more of every pixel of `tile` should be traced. Once they should not, nothing more should be.
+    pub fn allows(&self, tile: &FilmTile, samples: u32) -> bool {
+        !self.should_stop(tile.pixels.count() as u64 * u64::from(samples))
+    }
+
+    /// Traces a tile's samples of a pass.
     pub fn trace(
         &self,
         engine: &Engine,
         job: &TileJob,
         tile: &mut FilmTile,
         tracer: &mut dyn TraceBatches,
-    ) -> bool {
+    ) {
         let paths = tile.pixels.count() as u64 * u64::from(job.samples);
-        if self.should_stop(paths) {
-            return false;
-        }
         let _flushed = flush_denormals_to_zero();
         let start = Instant::now();
         tracer.trace(engine, job, tile);
@@ -92,7 +94,6 @@ impl<'a> Watch<'a> {
             *total
         };
         self.observe(&total);
-        true
     }
 
     /// Whether a batch of so many camera paths should not be started any more. A batch that would end after the

@@ -13,7 +13,7 @@ mod sobol;
 pub mod warp;
 
 pub use alias::AliasTable;
-pub use frame::Frame;
+pub use frame::{FRAME_CLASSES, Frame};
 pub use pdf::{AreaPdf, SolidAnglePdf, power_heuristic};
 pub use piecewise_bilinear::{PiecewiseBilinear, SquarePoint};
 pub use random::{RandomStream, StreamKey};

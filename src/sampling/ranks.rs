@@ -1,21 +1,21 @@
 //! The ranks of particles in their pixel.
 
-use super::{SequencePoint, StreamKey};
-use crate::sampling::sobol::scramble;
+use super::SequencePoint;
+use super::sobol::scramble;
 
 /// Numbers the particles of each pixel in the order in which they come: those of a pixel side by side.
 ///
 /// A rank counts the samples of all passes before, so that the passes of a pixel go on with one lattice.
 pub struct Ranks {
-    key: StreamKey,
+    key: [u32; 4],
     before: u32,
     pixel: Option<u32>,
     next: SequencePoint,
 }
 
 impl Ranks {
-    /// The ranks of a batch of `key`, where each pixel has had `before` samples in all passes before.
-    pub(super) fn new(key: StreamKey, before: u64) -> Self {
+    /// The ranks of a batch whose sequences `key` names, where each pixel has had `before` samples in all passes before.
+    pub(super) fn new(key: [u32; 4], before: u64) -> Self {
         Self {
             key,
             // Beyond 2^32 the lattice begins again.
@@ -39,8 +39,6 @@ impl Ranks {
     #[cold]
     fn start(&mut self, pixel: u32) {
         self.pixel = Some(pixel);
-        let seed = self.key.seed;
-        let key = [seed as u32, (seed >> 32) as u32, self.key.tile, pixel];
-        self.next = SequencePoint::ranked(scramble(key), self.before);
+        self.next = SequencePoint::ranked(scramble(self.key, pixel), self.before);
     }
 }

@@ -109,17 +109,21 @@ enum Points {
 pub struct Sampler {
     kind: SamplerKind,
     stream: RandomStream,
-    key: StreamKey,
+    /// What the sequences of a pixel depend on beside it.
+    key: [u32; 4],
     before: u64,
 }
 
 impl Sampler {
     /// The numbers of the batch of `key`, where each pixel has had `before` samples in all passes before.
-    pub fn new(kind: SamplerKind, key: StreamKey, before: u64) -> Self {
+    ///
+    /// Passes go on with the same sequences, until there is another of the `lessons` that the render learns from what it has traced: what was learned
+    /// must not depend on numbers with which it is used.
+    pub fn new(kind: SamplerKind, key: StreamKey, before: u64, lessons: u32) -> Self {
         Self {
             kind,
             stream: RandomStream::new(key),
-            key,
+            key: [key.seed as u32, (key.seed >> 32) as u32, key.tile, lessons],
             before,
         }
     }
@@ -138,9 +142,7 @@ impl Sampler {
 
     /// The point of sample number `sample` of this pass of pixel number `pixel` of the batch's tile.
     pub fn point(&self, pixel: u32, sample: u32) -> SequencePoint {
-        let seed = self.key.seed;
-        let key = [seed as u32, (seed >> 32) as u32, self.key.tile, pixel];
-        SequencePoint::new(key, self.before + u64::from(sample))
+        SequencePoint::new(self.key, pixel, self.before + u64::from(sample))
     }
 
     fn points(&self, what: Use) -> Points {
@@ -264,7 +266,7 @@ mod tests {
 
     #[test]
     fn independent_numbers_are_the_streams() {
-        let mut sampler = Sampler::new(SamplerKind::Independent, KEY, 0);
+        let mut sampler = Sampler::new(SamplerKind::Independent, KEY, 0, 0);
         let mut stream = RandomStream::new(KEY);
         let point = sampler.point(4, 5);
         let drawn: [f32; 3] = numbers(&mut sampler, point, Use::Camera);
@@ -277,7 +279,7 @@ mod tests {
     #[test]
     fn uses_do_not_share_dimensions() {
         for kind in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
-            let mut sampler = Sampler::new(kind, KEY, 5);
+            let mut sampler = Sampler::new(kind, KEY, 5, 0);
             let point = sampler.point(4, 0);
             let mut all: Vec<f32> = Vec::new();
             for what in [
@@ -310,7 +312,7 @@ mod tests {
     /// The bits that a coordinate does not have are random: without them, what is less probable than 2^-23 could not happen.
     #[test]
     fn decisions_have_32_random_bits() {
-        let mut sampler = Sampler::new(SamplerKind::Sobol, KEY, 0);
+        let mut sampler = Sampler::new(SamplerKind::Sobol, KEY, 0, 0);
         let point = sampler.point(4, 5);
         let drawn = [(); 4096].map(|()| decide(&mut sampler, point, 0));
         let low: std::collections::BTreeSet<u32> = drawn.iter().map(|bits| bits & 511).collect();
@@ -324,7 +326,7 @@ mod tests {
         let mut parts = [0; 16];
         for pass in 0..2 {
             let key = StreamKey { pass, ..KEY };
-            let mut sampler = Sampler::new(SamplerKind::Sobol, key, 8 * u64::from(pass));
+            let mut sampler = Sampler::new(SamplerKind::Sobol, key, 8 * u64::from(pass), 0);
             for sample in 0..8 {
                 let point = sampler.point(0, sample);
                 let [u] = numbers(&mut sampler, point, Use::Direction(3));
@@ -338,7 +340,7 @@ mod tests {
     #[test]
     fn ranks_go_on_from_pass_to_pass() {
         let ranks = |before, pixels: &[u32]| {
-            let mut ranks = Sampler::new(SamplerKind::ArrayQmc, KEY, before)
+            let mut ranks = Sampler::new(SamplerKind::ArrayQmc, KEY, before, 0)
                 .ranks()
                 .expect("it sorts");
             pixels.iter().map(|&pixel| ranks.next(pixel)).collect()

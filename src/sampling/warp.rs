@@ -44,6 +44,42 @@ pub fn cosine_hemisphere(u: [f32; 2]) -> Vec3 {
     Vec3::new(p.x, p.y, z)
 }
 
+/// The point of the unit square that [`cosine_hemisphere`] maps to `direction`, of which z is not negative.
+#[inline(always)]
+pub fn cosine_hemisphere_inverse(direction: Vec3) -> [f32; 2] {
+    let (x, y) = (direction.x, direction.y);
+    let radius = (x * x + y * y).sqrt();
+    let is_wide = x.abs() > y.abs();
+    let (along, across) = if is_wide { (x, y) } else { (y, x) };
+    let ratio = if along == 0.0 { 0.0 } else { across / along };
+    let radius = radius.copysign(along);
+    let other = radius * atan_of_at_most_one(ratio) / FRAC_PI_4;
+    let (x, y) = if is_wide {
+        (radius, other)
+    } else {
+        (other, radius)
+    };
+    [0.5 * (x + 1.0), 0.5 * (y + 1.0)]
+}
+
+/// The arc tangent of a number between -1 and 1, within 2e-8 but for rounding (Abramowitz and Stegun 1964, 4.4.49).
+#[inline(always)]
+fn atan_of_at_most_one(x: f32) -> f32 {
+    const COEFFICIENTS: [f32; 8] = [
+        0.002_866_225_7,
+        -0.016_165_737,
+        0.042_909_614,
+        -0.075_289_64,
+        0.106_562_64,
+        -0.142_088_99,
+        0.199_935_51,
+        -0.333_331_45,
+    ];
+    let z = x * x;
+    let sum = COEFFICIENTS.into_iter().fold(0.0, |sum, a| (sum + a) * z);
+    x + x * sum
+}
+
 /// The density of [`cosine_hemisphere`] for a direction with cosine `cosine` (0 below the horizon).
 #[inline(always)]
 pub fn cosine_hemisphere_pdf(cosine: f32) -> SolidAnglePdf {
@@ -94,6 +130,18 @@ pub fn triangle(u: [f32; 2]) -> [f32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_inverse_of_the_cosine_map_finds_the_point() {
+        const N: usize = 101;
+        for i in 0..N * N {
+            let u = [i / N, i % N].map(|k| (k as f32 + 0.5) / N as f32);
+            let back = cosine_hemisphere_inverse(cosine_hemisphere(u));
+            for axis in 0..2 {
+                assert!((back[axis] - u[axis]).abs() < 1e-6, "{u:?} {back:?}");
+            }
+        }
+    }
     use crate::sampling::{RandomStream, StreamKey};
 
     fn mean_over_samples<const N: usize>(f: impl Fn([f32; 2]) -> [f32; N]) -> [f64; N] {

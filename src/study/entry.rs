@@ -24,6 +24,8 @@ pub struct EntrySettings {
     pub colour: ColourMode,
     /// Where the random numbers of paths come from.
     pub sampler: SamplerKind,
+    /// Whether directions are guided by what was learned.
+    pub guiding: bool,
     /// How direct light is found.
     pub direct_light: DirectLight,
     /// Most segments of a path, camera ray included; `None` takes what the scene says.
@@ -45,6 +47,7 @@ impl Default for EntrySettings {
             options: StrategyOptions::default(),
             colour: settings.colour,
             sampler: settings.sampler,
+            guiding: settings.guiding,
             direct_light: settings.direct_light,
             max_depth: settings.max_depth,
             robust: settings.robust,
@@ -73,6 +76,7 @@ impl EntrySettings {
             seed: 0,
             colour: self.colour,
             sampler: self.sampler,
+            guiding: self.guiding,
             direct_light: self.direct_light,
             max_depth: self.max_depth,
             robust: self.robust,
@@ -94,6 +98,8 @@ pub struct StrategySpec {
     pub options: StrategyOptions,
     /// The sampler that it is to have, if it is not the others'.
     pub sampler: Option<SamplerKind>,
+    /// Whether its directions are to be guided, if that is not as with the others.
+    pub guiding: Option<bool>,
 }
 
 /// What is wrong with a written strategy.
@@ -122,7 +128,7 @@ pub enum SpecError {
     },
     /// A setting that no strategy has.
     #[error(
-        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, n-max, population, counts and sampler"
+        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, n-max, population, counts, sampler and guiding"
     )]
     Unknown(String),
 }
@@ -135,6 +141,7 @@ impl FromStr for StrategySpec {
         let strategy = parts.next().unwrap_or_default().parse::<StrategyKind>()?;
         let mut options = StrategyOptions::default();
         let mut sampler = None;
+        let mut guiding = None;
         for part in parts {
             let (name, value) = part
                 .split_once('=')
@@ -146,6 +153,7 @@ impl FromStr for StrategySpec {
                 "n-max" => options.n_max = Some(number("n-max", value)?),
                 "population" => options.population = Some(value.parse()?),
                 "sampler" => sampler = Some(value.parse()?),
+                "guiding" => guiding = Some(on_or_off("guiding", value)?),
                 "counts" => options.counts = Some(value.parse()?),
                 _ => return Err(SpecError::Unknown(name.to_owned())),
             }
@@ -156,7 +164,20 @@ impl FromStr for StrategySpec {
             strategy,
             options,
             sampler,
+            guiding,
         })
+    }
+}
+
+fn on_or_off(setting: &'static str, value: &str) -> Result<bool, SpecError> {
+    match value {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(SpecError::Value {
+            setting,
+            value: value.to_owned(),
+            expected: "on or off",
+        }),
     }
 }
 
@@ -182,6 +203,8 @@ mod tests {
         assert_eq!(spec.options.n_max, Some(2.0));
         let sobol: StrategySpec = "roulette:sampler=sobol".parse().unwrap();
         assert_eq!(sobol.sampler, Some(SamplerKind::Sobol));
+        let guided: StrategySpec = "roulette:guiding=on".parse().unwrap();
+        assert_eq!((guided.guiding, sobol.guiding), (Some(true), None));
         let plain: StrategySpec = "roulette".parse().unwrap();
         assert_eq!(plain.options, StrategyOptions::default());
     }
@@ -195,6 +218,7 @@ mod tests {
             ("throughput-roulette:from-depth=1.5", "not a whole number"),
             ("roulette:size=3", "no strategy has a setting `size`"),
             ("roulette:sampler=halton", "sobol and array-qmc"),
+            ("roulette:guiding=yes", "not on or off"),
             ("roulette:n-max=3", "n-max"),
             ("roulette:termination=1.5", "termination"),
         ] {

@@ -10,6 +10,7 @@ use glam::Vec3;
 
 use super::batch::Segments;
 use crate::room::make_room;
+use crate::sampling::Frame;
 use crate::spectrum::Colour;
 
 /// Bits of a key for the place along each axis.
@@ -106,21 +107,8 @@ impl Places {
             .to_array()
             // Conversion saturates, and gives 0 for what is no number.
             .map(|place| spread((place as u32).min((1 << PLACE_BITS) - 1)));
-        class(normal) << (3 * PLACE_BITS) | x << 2 | y << 1 | z
+        u64::from(Frame::class(normal)) << (3 * PLACE_BITS) | x << 2 | y << 1 | z
     }
-}
-
-/// Which of the six axis directions `normal`, of any length, is nearest to.
-fn class(normal: Vec3) -> u64 {
-    let size = normal.abs();
-    let (axis, along) = if size.x >= size.y && size.x >= size.z {
-        (0, normal.x)
-    } else if size.y >= size.z {
-        (1, normal.y)
-    } else {
-        (2, normal.z)
-    };
-    2 * axis + u64::from(along < 0.0)
 }
 
 /// Puts two zeros before each of 12 bits.
@@ -140,7 +128,7 @@ mod tests {
     fn bits_are_spread() {
         for bits in 0..1 << PLACE_BITS {
             let bit = |i| u64::from(bits >> i & 1) << (3 * i);
-            assert_eq!(spread(bits), (0..PLACE_BITS).map(bit).sum());
+            assert_eq!(spread(bits), (0..PLACE_BITS).map(bit).sum::<u64>());
         }
     }
 

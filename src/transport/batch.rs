@@ -4,8 +4,10 @@ use std::ops::Range;
 
 use glam::Vec3;
 
+use super::lineage::Birth;
 use super::variant::Variant;
 use crate::embree::{Hits, Rays};
+use crate::learning::Knowledge;
 use crate::lanes::{CHUNK, VectorColumn};
 use crate::room::{gather, make_room, resize};
 use crate::sampling::{SequencePoint, SolidAnglePdf};
@@ -50,6 +52,8 @@ pub(super) struct Segments<C: Colour> {
     pub rays: Rays,
     /// What they hit.
     pub hits: Hits,
+    /// How they came to be. Empty but where the render learns.
+    pub births: Vec<Birth>,
 }
 
 /// A surface to which next-event estimation looks for light.
@@ -78,6 +82,10 @@ pub(super) struct Vertices<C: Colour, V: Variant> {
     /// By how much rays start off the surface at the least, in scene units (see [`Instance::clearance`](crate::scene::Instance::clearance)).
     /// Empty where the scene has no instances.
     pub clearance: Vec<f32>,
+    /// Where what was learned is found (see [`Knowledge::address`](crate::learning::Knowledge::address)). Empty where nothing is learned.
+    pub address: Vec<u32>,
+    /// The segment that led here. Empty but where the render learns.
+    pub segment: Vec<u32>,
     /// How that side scatters light at the path's wavelengths.
     pub bsdf: Vec<V::Scattering<C::Spectrum>>,
 }
@@ -86,6 +94,8 @@ pub(super) struct Vertices<C: Colour, V: Variant> {
 pub(super) struct ShadowRays<C: Colour> {
     /// The camera path that each contributes to.
     pub path: Vec<u32>,
+    /// The segment at whose end each starts. Empty but where the render learns.
+    pub segment: Vec<u32>,
     /// What it contributes if nothing is in the way.
     pub contribution: Vec<C::Spectrum>,
     /// The rays themselves, in world space.
@@ -144,6 +154,7 @@ impl<C: Colour> Segments<C> {
             origins: Vec::new(),
             rays: Rays::default(),
             hits: Hits::default(),
+            births: Vec::new(),
         }
     }
 
@@ -159,6 +170,7 @@ impl<C: Colour> Segments<C> {
         make_room(&mut self.refraction, count);
         make_room(&mut self.direction_pdf, count);
         self.origins.clear();
+        self.births.clear();
         self.rays.resize(count);
     }
 
@@ -177,6 +189,7 @@ impl<C: Colour> Segments<C> {
         gather(&mut self.origins, &source.origins, order);
         self.rays.gather(&source.rays, order);
         self.hits.gather(&source.hits, order);
+        gather(&mut self.births, &source.births, order);
     }
 
     /// The end of a ray, in world space: where it met its shape, if it met one.
@@ -220,12 +233,21 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
             geometric_normal: VectorColumn::default(),
             normal: VectorColumn::default(),
             clearance: Vec::new(),
+            address: Vec::new(),
+            segment: Vec::new(),
             bsdf: Vec::new(),
         }
     }
 
     pub fn len(&self) -> usize {
         self.path.len()
+    }
+
+    /// Finds out where what was learned about the vertices is found.
+    pub fn find_addresses(&mut self, knowledge: &Knowledge) {
+        make_room(&mut self.address, self.path.len());
+        let address = |i| knowledge.address(self.position.get(i), self.normal.get(i));
+        self.address.extend((0..self.path.len()).map(address));
     }
 
     /// A vertex as next-event estimation sees it.
@@ -264,6 +286,8 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
         if V::INSTANCES {
             self.clearance.clear();
         }
+        self.address.clear();
+        self.segment.clear();
         make_room(&mut self.bsdf, count);
     }
 }
@@ -272,6 +296,7 @@ impl<C: Colour> ShadowRays<C> {
     pub fn new() -> Self {
         Self {
             path: Vec::new(),
+            segment: Vec::new(),
             contribution: Vec::new(),
             rays: Rays::default(),
         }
@@ -280,6 +305,7 @@ impl<C: Colour> ShadowRays<C> {
     /// Empties the states and makes room for `count` rays, which the caller sets one by one.
     pub fn restart(&mut self, count: usize) {
         make_room(&mut self.path, count);
+        self.segment.clear();
         make_room(&mut self.contribution, count);
         self.rays.resize(count);
     }

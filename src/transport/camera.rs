@@ -7,6 +7,7 @@ use multiversion::multiversion;
 
 use super::batch::{CameraPaths, Segments};
 use super::engine::{Engine, TileJob};
+use super::lineage::first_births;
 use super::variant::Variant;
 use crate::film::FilmTile;
 use crate::lanes::CHUNK;
@@ -21,7 +22,7 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 ))]
 pub(super) fn start<C: Colour, V: Variant>(
     engine: &Engine,
-    job: &TileJob,
+    job: &TileJob<'_>,
     tile: &FilmTile,
     pixels: Range<u32>,
     sampler: &mut Sampler,
@@ -85,6 +86,9 @@ pub(super) fn start<C: Colour, V: Variant>(
         segments.refraction.resize(count, Refraction::NONE);
     }
     paths.radiance.resize(count, C::Spectrum::ZERO);
+    if job.learns {
+        first_births(&mut segments.births, count);
+    }
     engine.emission.prepare(paths);
 }
 

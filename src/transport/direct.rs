@@ -5,10 +5,13 @@ use multiversion::multiversion;
 
 use super::batch::{CameraPaths, ShadowRays, Vertices};
 use super::engine::Engine;
+use super::guidance::Guidance;
 use super::light_chunk::LightChunk;
+use super::lineage::Generation;
 use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
+use crate::learning::Knowledge;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use, power_heuristic};
 use crate::scene::{BsdfValues, SurfaceSamples};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -30,6 +33,7 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     vertices: &Vertices<C, V>,
     depth: u32,
     sampler: &mut Sampler,
+    knowledge: Option<&Knowledge>,
     shadow: &mut ShadowRays<C>,
 ) {
     let samples = engine.settings.samples;
@@ -42,6 +46,7 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     let mut rays = ShadowChunk::new();
     let mut points = [SequencePoint::default(); CHUNK];
     let mut clearances = [0.0; CHUNK];
+    let mut guidance = Guidance::new();
     let starts = (0..vertices.len()).step_by(CHUNK);
     for (sample, start) in (0..samples.emitters).flat_map(|s| starts.clone().map(move |i| (s, i))) {
         let chunk = start..vertices.len().min(start + CHUNK);
@@ -60,6 +65,11 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
             &lights.direction,
             &mut bsdfs,
         );
+        if let Some(knowledge) = knowledge {
+            let bsdfs_of_chunk = &vertices.bsdf[chunk.clone()];
+            guidance.ask(knowledge, vertices.address[chunk.clone()].iter().copied());
+            guidance.mix(bsdfs_of_chunk, &normals, &lights.direction, &mut bsdfs);
+        }
         normals.load(vertices.geometric_normal.slices(chunk.clone()));
         let clearances = vertices.clearances(chunk.clone(), &mut clearances);
         rays.aim(&positions, &normals, clearances, &lights);
@@ -80,6 +90,10 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
             );
         }
         rays.append(&kept, shadow);
+        if !vertices.segment.is_empty() {
+            let segments = kept.iter().map(|lane| vertices.segment[start + lane]);
+            shadow.segment.extend(segments);
+        }
         shadow
             .path
             .extend(kept.iter().map(|lane| vertices.path[start + lane]));
@@ -189,7 +203,19 @@ impl ShadowChunk {
 }
 
 /// Adds what the unoccluded shadow rays carry.
-pub(super) fn add_unoccluded<C: Colour>(shadow: &ShadowRays<C>, paths: &mut CameraPaths<C>) {
+pub(super) fn add_unoccluded<C: Colour>(
+    shadow: &ShadowRays<C>,
+    paths: &mut CameraPaths<C>,
+    generation: Option<&mut Generation>,
+) {
+    if let Some(generation) = generation {
+        for (i, &segment) in shadow.segment.iter().enumerate() {
+            generation.count_shadow_ray(segment as usize);
+            if !shadow.rays.occluded(i) {
+                generation.add(segment as usize, shadow.contribution[i]);
+            }
+        }
+    }
     for i in 0..shadow.path.len() {
         if !shadow.rays.occluded(i) {
             paths.radiance[shadow.path[i] as usize] += shadow.contribution[i];

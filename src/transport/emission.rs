@@ -7,6 +7,7 @@ use multiversion::multiversion;
 
 use super::batch::{CameraPaths, Receiver, Segments, Vertices};
 use super::engine::Engine;
+use super::lineage::Generation;
 use super::settings::DirectLight;
 use super::surface::SurfaceChunk;
 use super::variant::{Arrivals, Scattering, Variant};
@@ -32,6 +33,7 @@ pub(super) fn arrive<C: Colour, V: Variant>(
     sampler: &mut Sampler,
     depth: u32,
     scatters: bool,
+    mut generation: Option<&mut Generation>,
 ) {
     vertices.restart(segments.len());
     let hides_surroundings = depth == 0 && engine.settings.hide_emitters;
@@ -59,6 +61,7 @@ pub(super) fn arrive<C: Colour, V: Variant>(
             &surfaces,
             chunk.clone(),
             hides_surroundings,
+            generation.as_deref_mut(),
         );
         if !scatters {
             continue;
@@ -75,6 +78,9 @@ pub(super) fn arrive<C: Colour, V: Variant>(
         let scattering = V::Scattering::arrive(&arrivals, sampler, &mut vertices.bsdf);
         let segment_of = |lane| start + lane;
         let kept = scattering.iter().map(segment_of);
+        if generation.is_some() {
+            vertices.segment.extend(kept.clone().map(|i| i as u32));
+        }
         vertices.path.extend(kept.clone().map(|i| segments.path[i]));
         vertices
             .throughput
@@ -110,7 +116,16 @@ fn add_emission<C: Colour>(
     surfaces: &SurfaceChunk,
     chunk: Range<usize>,
     hides_surroundings: bool,
+    mut generation: Option<&mut Generation>,
 ) {
+    let wavelengths = &paths.wavelengths;
+    let radiances = &mut paths.radiance;
+    let mut add = |i: usize, path: usize, light: C::Spectrum| {
+        radiances[path] += light;
+        if let Some(generation) = &mut generation {
+            generation.add(i, light);
+        }
+    };
     for (lane, i) in chunk.enumerate() {
         let path = segments.path[i] as usize;
         match surfaces.shapes[lane] {
@@ -120,9 +135,9 @@ fn add_emission<C: Colour>(
                     let direction = Vec3::from(segments.rays.direction(i));
                     let light_pdf = light.surrounding_pdf(direction);
                     let weight = engine.mis_weight(segments, i, emitter, light_pdf);
-                    let wavelengths = &paths.wavelengths[path];
+                    let wavelengths = &wavelengths[path];
                     let radiance = light.surrounding_radiance::<C>(direction, wavelengths) * weight;
-                    paths.radiance[path] += segments.throughput[i] * radiance;
+                    add(i, path, segments.throughput[i] * radiance);
                 }
             }
             Some(shape) => {
@@ -131,14 +146,14 @@ fn add_emission<C: Colour>(
                 {
                     let point = surfaces.points.get(lane);
                     let direction = Vec3::from(segments.rays.direction(i));
-                    let wavelengths = &paths.wavelengths[path];
+                    let wavelengths = &wavelengths[path];
                     let parameters = || shape.geometry.parameters(&segments.hit(i), &point);
                     let radiance = light.radiance::<C>(&point, parameters, -direction, wavelengths);
                     if !radiance.is_black() {
                         let origin = Vec3::from(segments.rays.origin(i));
                         let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
                         let weight = engine.mis_weight(segments, i, emitter, light_pdf);
-                        paths.radiance[path] += segments.throughput[i] * (radiance * weight);
+                        add(i, path, segments.throughput[i] * (radiance * weight));
                     }
                 }
             }

@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+
 use super::accelerator::Accelerator;
 use super::batch::Segments;
 use super::emission_table::EmissionTable;
 use super::settings::TransportSettings;
 use crate::embree::Version;
 use crate::film::FilterSampler;
+use crate::learning::Knowledge;
 use crate::sampling::{SamplerKind, StreamKey};
 use crate::scene::{CameraView, Emitter, Instance, LightChoice, Parallelogram, Scene};
 use crate::spectrum::Colour;
@@ -34,14 +37,18 @@ pub struct Engine {
 }
 
 /// One batch: some samples of every pixel of a tile.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TileJob {
+#[derive(Clone, Copy, Debug)]
+pub struct TileJob<'k> {
     /// The random numbers of the batch.
     pub key: StreamKey,
     /// Samples per pixel of all batches of the tile before this one.
     pub first_sample: u64,
     /// Camera paths per pixel, positive.
     pub samples: u32,
+    /// What was learned before, of a render that learns.
+    pub knowledge: Option<&'k Knowledge>,
+    /// Whether what is traced is to be learned from.
+    pub learns: bool,
 }
 
 impl Engine {
@@ -84,6 +91,12 @@ impl Engine {
     /// The version of the intersection layer's library.
     pub fn embree_version(&self) -> Version {
         self.accelerator.scene().device().version()
+    }
+
+    /// The least and the greatest coordinates of all surfaces, in world space.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        let bounds = self.accelerator.scene().bounds();
+        [bounds.min.into(), bounds.max.into()]
     }
 
     /// Whether the particles of a pixel are sorted at every bounce. The offspring of one camera path, and tiles, stay together.

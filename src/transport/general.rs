@@ -5,7 +5,9 @@ use glam::Vec3;
 use super::variant::{Arrival, Arrivals, Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::{Frame, Sampler};
-use crate::scene::{Bsdf, BsdfSamples, BsdfValues, Refraction, SeenPoint, SurfaceParameters};
+use crate::scene::{
+    Bsdf, BsdfSamples, BsdfValues, Model, Refraction, SeenPoint, SurfaceParameters,
+};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// See the module.
@@ -17,6 +19,9 @@ impl Variant for General {
     const REFRACTS: bool = true;
     const INSTANCES: bool = true;
 }
+
+/// The shininess of lobes as narrow as what is told apart where light is learned.
+const NARROW: f32 = 8.0;
 
 /// A bsdf where a path has met it.
 #[derive(Clone, Copy, Debug)]
@@ -114,6 +119,32 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
     #[inline]
     fn has_smooth_lobe(&self) -> bool {
         self.bsdf.has_smooth_lobe()
+    }
+
+    #[inline]
+    fn guided_share(&self) -> f32 {
+        if !self.has_smooth_lobe() {
+            return 0.0;
+        }
+        match self.bsdf {
+            Bsdf::Plain(Model::Diffuse(_)) => 1.0,
+            // What arrives within a narrow lobe is not learned.
+            _ => 0.5 / (1.0 + self.shininess() * (1.0 / NARROW)),
+        }
+    }
+
+    #[inline]
+    fn frame(&self, _normal: Vec3) -> Frame {
+        self.frame
+    }
+
+    #[inline]
+    fn look(&self, lane: usize, _normal: Vec3, local: Vec3, samples: &mut BsdfSamples<S>) {
+        let value = self.bsdf.evaluate(self.outgoing, local);
+        samples.direction.put(lane, self.frame.to_world(local));
+        samples.weight[lane] = self.dispersed(value.value, value.is_dispersive);
+        samples.pdf[lane] = value.pdf.0;
+        samples.refraction[lane] = self.refraction.then(1.0, value.is_dispersive);
     }
 
     #[inline]

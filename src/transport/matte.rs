@@ -1,8 +1,10 @@
 //! The variant for scenes whose surfaces are all diffuse, without textures: nothing but a reflectance is known of a vertex.
 
+use glam::Vec3;
+
 use super::variant::{Arrivals, Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
-use crate::sampling::Sampler;
+use crate::sampling::{Frame, Sampler, warp};
 use crate::scene::{BsdfSamples, BsdfValues, Diffuse, Refraction};
 use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
 
@@ -56,6 +58,24 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     #[inline(always)]
     fn has_smooth_lobe(&self) -> bool {
         true
+    }
+
+    #[inline(always)]
+    fn guided_share(&self) -> f32 {
+        1.0
+    }
+
+    #[inline(always)]
+    fn frame(&self, normal: Vec3) -> Frame {
+        Frame::about(normal)
+    }
+
+    #[inline(always)]
+    fn look(&self, lane: usize, normal: Vec3, local: Vec3, samples: &mut BsdfSamples<S>) {
+        let pdf = warp::cosine_hemisphere_pdf(local.z).0;
+        samples.direction.put(lane, self.frame(normal).to_world(local));
+        samples.weight[lane] = self.reflectance * pdf;
+        samples.pdf[lane] = pdf;
     }
 
     #[inline(always)]

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::arrange::Arrangement;
 use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
 use super::engine::{Engine, TileJob};
+use super::lineage::Lineage;
 use super::recorded_rays::RecordedRays;
 use super::settings::DirectLight;
 use super::stages::{Stage, Stopwatch};
@@ -13,6 +14,7 @@ use super::variant::Variant;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, splat, walk_stage};
 use crate::embree::Coherence;
 use crate::film::FilmTile;
+use crate::learning::Knowledge;
 use crate::sampling::Sampler;
 use crate::spectrum::Colour;
 use crate::walk::Offspring;
@@ -33,6 +35,8 @@ pub(super) struct Pipeline<C: Colour, V: Variant> {
     shadow: ShadowRays<C>,
     particles: Particles,
     offspring: Offspring,
+    /// What was observed.
+    pub lineage: Lineage,
     /// What was counted so far.
     pub statistics: TraceStatistics,
     /// Where rays are recorded, while they are.
@@ -49,6 +53,7 @@ impl<C: Colour, V: Variant> Default for Pipeline<C, V> {
             shadow: ShadowRays::new(),
             particles: Particles::default(),
             offspring: Offspring::default(),
+            lineage: Lineage::default(),
             statistics: TraceStatistics::default(),
             recorded: None,
         }
@@ -57,8 +62,9 @@ impl<C: Colour, V: Variant> Default for Pipeline<C, V> {
 
 impl<C: Colour, V: Variant> Pipeline<C, V> {
     /// Traces a tile's samples of a pass and adds them to its pixels, batch by batch.
-    pub fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
-        let mut sampler = Sampler::new(engine.settings.sampler, job.key, job.first_sample);
+    pub fn trace(&mut self, engine: &Engine, job: &TileJob<'_>, tile: &mut FilmTile) {
+        let lessons = job.knowledge.map_or(0, Knowledge::lessons);
+        let mut sampler = Sampler::new(engine.settings.sampler, job.key, job.first_sample, lessons);
         let pixels = tile.pixels.count() as u32;
         let batch = if engine.sorts() {
             (BATCH / job.samples).max(1)
@@ -75,7 +81,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
     fn trace_pixels(
         &mut self,
         engine: &Engine,
-        job: &TileJob,
+        job: &TileJob<'_>,
         tile: &mut FilmTile,
         pixels: Range<u32>,
         sampler: &mut Sampler,
@@ -91,7 +97,12 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             &mut self.segments,
         );
         stopwatch.lap(Stage::Camera, &mut self.statistics.stages);
+        self.lineage.restart();
         self.follow(engine, job, sampler, &mut stopwatch);
+        if job.learns {
+            self.lineage.conclude(&self.paths);
+            stopwatch.lap(Stage::Learn, &mut self.statistics.stages);
+        }
         splat::expose(engine, &self.paths, tile, &mut self.statistics.dropped);
         stopwatch.lap(Stage::Splat, &mut self.statistics.stages);
         self.statistics.camera_paths += self.paths.radiance.len() as u64;
@@ -101,7 +112,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
     fn follow(
         &mut self,
         engine: &Engine,
-        job: &TileJob,
+        job: &TileJob<'_>,
         sampler: &mut Sampler,
         stopwatch: &mut Stopwatch,
     ) {
@@ -139,6 +150,9 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 self.arrangement.arrange(job.samples, &mut self.segments);
                 stopwatch.lap(Stage::Arrange, &mut self.statistics.stages);
             }
+            if job.learns {
+                self.lineage.begin(&self.segments);
+            }
             let scatters = depth + 1 < max_depth;
             emission::arrive(
                 engine,
@@ -148,7 +162,11 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 sampler,
                 depth,
                 scatters,
+                job.learns.then(|| self.lineage.youngest()).flatten(),
             );
+            if let Some(knowledge) = job.knowledge {
+                self.vertices.find_addresses(knowledge);
+            }
             stopwatch.lap(Stage::Emission, &mut self.statistics.stages);
             self.statistics.vertices += self.vertices.len() as u64;
             self.statistics.deepest = self.statistics.deepest.max(depth + 1);
@@ -159,6 +177,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                     &self.vertices,
                     depth,
                     sampler,
+                    job.knowledge,
                     &mut self.shadow,
                 );
                 stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
@@ -167,7 +186,11 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 }
                 intersect::occluded(&engine.accelerator, &mut self.shadow, &mut self.statistics);
                 stopwatch.lap(Stage::Intersect, &mut self.statistics.stages);
-                direct::add_unoccluded(&self.shadow, &mut self.paths);
+                direct::add_unoccluded(
+                    &self.shadow,
+                    &mut self.paths,
+                    job.learns.then(|| self.lineage.youngest()).flatten(),
+                );
                 stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
             }
             self.statistics.walk += walk_stage::decide(
@@ -191,6 +214,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 self.offspring.children(),
                 depth,
                 sampler,
+                job.knowledge,
                 &mut self.segments,
             );
             stopwatch.lap(Stage::Scatter, &mut self.statistics.stages);

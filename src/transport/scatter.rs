@@ -4,9 +4,12 @@ use multiversion::multiversion;
 
 use super::batch::{CameraPaths, Segments, Vertices};
 use super::engine::Engine;
+use super::guidance::{self, Guidance};
+use super::lineage::Birth;
 use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
+use crate::learning::Knowledge;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
 use crate::scene::BsdfSamples;
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -25,6 +28,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     children: &[Child],
     depth: u32,
     sampler: &mut Sampler,
+    knowledge: Option<&Knowledge>,
     segments: &mut Segments<C>,
 ) {
     segments.restart(children.len());
@@ -40,6 +44,9 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     let mut samples = BsdfSamples::new();
     let mut origins = VectorLanes::default();
     let mut clearances = [0.0; CHUNK];
+    let mut guidance = Guidance::new();
+    let mut bins = [None; CHUNK];
+    let learns = !vertices.segment.is_empty();
     for children in children.chunks(CHUNK) {
         for (lane, child) in children.iter().enumerate() {
             normals.put(lane, vertices.normal.get(child.parent as usize));
@@ -63,7 +70,20 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         }
         let parents = children.iter().map(|child| child.parent as usize);
         let bsdfs = parents.clone().map(|parent| &vertices.bsdf[parent]);
-        V::Scattering::sample(bsdfs, &normals, &numbers, &mut samples);
+        if let Some(knowledge) = knowledge {
+            guidance.ask(knowledge, parents.clone().map(|parent| vertices.address[parent]));
+            guidance.warp(bsdfs.clone(), &mut numbers);
+        }
+        V::Scattering::sample(bsdfs.clone(), &normals, &numbers, &mut samples);
+        if knowledge.is_some() {
+            guidance.redirect(bsdfs, &normals, &numbers, &mut samples);
+        }
+        if learns {
+            for (bin, (lane, parent)) in bins.iter_mut().zip(parents.clone().enumerate()) {
+                let frame = vertices.bsdf[parent].frame(normals.get(lane));
+                *bin = guidance::bin(frame.to_local(samples.direction.get(lane)));
+            }
+        }
         for (lane, parent) in parents.clone().enumerate() {
             normals.put(lane, vertices.geometric_normal.get(parent));
             origins.put(lane, vertices.position.get(parent));
@@ -103,6 +123,22 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         segments
             .direction_pdf
             .extend(lanes.clone().map(|lane| SolidAnglePdf(samples.pdf[lane])));
+        if learns {
+            let birth = |lane: usize| {
+                let parent = parent(lane);
+                // Of light at the camera, the part that the child's own throughput has multiplied, and that of its parent.
+                let expected = 1.0 / children[lane].weight;
+                let reflected = vertices.throughput[parent] * vertices.bsdf[parent].albedo();
+                Birth {
+                    parent: vertices.segment[parent],
+                    address: vertices.address[parent],
+                    bin: bins[lane],
+                    per_radiance: 1.0 / throughputs[lane].mean(),
+                    per_value: expected / reflected.mean(),
+                }
+            };
+            segments.births.extend(lanes.clone().map(birth));
+        }
         if V::REFRACTS {
             let refraction = lanes.clone().map(|lane| samples.refraction[lane]);
             segments.refraction.extend(refraction);

@@ -22,13 +22,15 @@ pub enum Stage {
     Walk,
     /// Children leave their parents.
     Scatter,
+    /// What the paths have brought back is recorded, while the render learns.
+    Learn,
     /// Finished paths are added to their pixels.
     Splat,
 }
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Camera,
         Self::Intersect,
         Self::Arrange,
@@ -36,6 +38,7 @@ impl Stage {
         Self::Direct,
         Self::Walk,
         Self::Scatter,
+        Self::Learn,
         Self::Splat,
     ];
 
@@ -49,6 +52,7 @@ impl Stage {
             Self::Direct => "direct",
             Self::Walk => "walk",
             Self::Scatter => "scatter",
+            Self::Learn => "learn",
             Self::Splat => "splat",
         }
     }

@@ -7,6 +7,7 @@ use super::pipeline::Pipeline;
 use super::recorded_rays::RecordedRays;
 use super::statistics::TraceStatistics;
 use crate::film::FilmTile;
+use crate::learning::Observations;
 use crate::spectrum::Colour;
 
 /// One thread's tracer: it traces batch after batch.
@@ -42,16 +43,23 @@ impl<C: Colour> Default for Tracer<C> {
 pub trait TraceBatches: Send {
     /// Traces a batch and adds its samples to the pixels of `tile`. The result depends on nothing but the engine, the
     /// job and the tile.
-    fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile);
+    fn trace(&mut self, engine: &Engine, job: &TileJob<'_>, tile: &mut FilmTile);
+
+    /// What was observed since the last call, of jobs to be [learned from](TileJob::learns); pixels are numbered within the tile.
+    fn take_observations(&mut self) -> Observations;
 
     /// What was counted since the last call.
     fn take_statistics(&mut self) -> TraceStatistics;
 }
 
 impl<C: Colour> TraceBatches for Tracer<C> {
-    fn trace(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) {
+    fn trace(&mut self, engine: &Engine, job: &TileJob<'_>, tile: &mut FilmTile) {
         self.prepare(engine);
         dispatch!(&mut self.pipeline, pipeline => pipeline.trace(engine, job, tile));
+    }
+
+    fn take_observations(&mut self) -> Observations {
+        dispatch!(&mut self.pipeline, pipeline => std::mem::take(&mut pipeline.lineage.observed))
     }
 
     fn take_statistics(&mut self) -> TraceStatistics {
@@ -61,7 +69,7 @@ impl<C: Colour> TraceBatches for Tracer<C> {
 
 impl<C: Colour> Tracer<C> {
     /// Traces a batch as [`TraceBatches::trace`] does, and returns its rays.
-    pub fn record(&mut self, engine: &Engine, job: &TileJob, tile: &mut FilmTile) -> RecordedRays {
+    pub fn record(&mut self, engine: &Engine, job: &TileJob<'_>, tile: &mut FilmTile) -> RecordedRays {
         self.prepare(engine);
         dispatch!(&mut self.pipeline, pipeline => {
             pipeline.recorded = Some(RecordedRays::default());

@@ -10,7 +10,7 @@ use super::batch::{CameraPaths, Segments};
 use super::engine::Engine;
 use super::surface::SurfaceChunk;
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
-use crate::sampling::{Sampler, SequencePoint};
+use crate::sampling::{Frame, Sampler, SequencePoint};
 use crate::scene::{
     BsdfSamples, BsdfValues, Material, Refraction, Shape, Side, SurfaceParameters, SurfacePoint,
 };
@@ -163,6 +163,17 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
 
     /// Whether next-event estimation can find light here: not where all lobes are discrete.
     fn has_smooth_lobe(&self) -> bool;
+
+    /// The probability with which what was learned draws the direction of a child, and not the surface: 1 where the surface
+    /// draws from the whole square as well, 0 where it is of no use.
+    fn guided_share(&self) -> f32;
+
+    /// The frame in which directions are drawn, where `normal` is the shading normal of the side that was hit.
+    fn frame(&self, normal: Vec3) -> Frame;
+
+    /// Makes sample number `lane` one in the unit direction `local` of the [frame](Self::frame): with the bsdf times cosine as its weight, and
+    /// the density with which the surface itself would have drawn the direction.
+    fn look(&self, lane: usize, normal: Vec3, local: Vec3, samples: &mut BsdfSamples<S>);
 
     /// Evaluates at most [`CHUNK`] vertices, each with the shading normal of the side that was hit and an incident direction.
     fn evaluate(

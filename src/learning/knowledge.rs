@@ -1,0 +1,102 @@
+//! What was learned so far, as it is asked for while paths are traced.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::{CellTree, Experience, PixelKnowledge, SquareWarp};
+use crate::sampling::{FRAME_CLASSES, Frame};
+use crate::scene::ImageSize;
+
+/// Halvings along each axis with which cells begin.
+const FIRST_HALVINGS: u32 = 3;
+
+/// What is known of the light that arrives in a cell at surfaces that face one way.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Insight {
+    /// From where, on the square that directions are drawn from.
+    pub warp: SquareWarp,
+    /// The mean of what a path that goes on there brings back, for albedo 1.
+    pub mean: f32,
+    /// The mean of its square.
+    pub square: f32,
+    /// How many rays such a path takes.
+    pub cost: f32,
+}
+
+/// What was learned; it changes between passes only.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Knowledge {
+    tree: CellTree,
+    /// The insight of each address, counted from 1; 0 where there is none.
+    places: Vec<u32>,
+    insights: Vec<Insight>,
+    /// How often it has changed.
+    lessons: u32,
+    pixels: PixelKnowledge,
+    film: ImageSize,
+    experience: Experience,
+}
+
+impl Knowledge {
+    /// Nothing is known of a scene whose surfaces lie in the box `bounds` (world space).
+    pub fn nothing(bounds: [Vec3; 2], film: ImageSize) -> Self {
+        let tree = CellTree::new(bounds, FIRST_HALVINGS);
+        Self {
+            places: vec![0; tree.cells() as usize * FRAME_CLASSES],
+            tree,
+            insights: Vec::new(),
+            lessons: 0,
+            pixels: PixelKnowledge::default(),
+            film,
+            experience: Experience::default(),
+        }
+    }
+
+    /// How many lessons there have been. Random numbers must depend on it: those of a lesson have decided what was learned.
+    pub fn lessons(&self) -> u32 {
+        self.lessons
+    }
+
+    /// The address of vertices at `position` whose shading normal is `normal`, unit, on the side that is seen; both in world space.
+    #[inline]
+    pub fn address(&self, position: Vec3, normal: Vec3) -> u32 {
+        self.tree.cell(position) * FRAME_CLASSES as u32 + Frame::class(normal)
+    }
+
+    /// What is known at an address.
+    #[inline(always)]
+    pub fn insight(&self, address: u32) -> Option<&Insight> {
+        match self.places[address as usize] {
+            0 => None,
+            place => Some(&self.insights[place as usize - 1]),
+        }
+    }
+
+    /// What was observed so far, to be added to while this is asked; it is to be [given back](Self::give_back).
+    pub fn take_experience(&mut self) -> Experience {
+        std::mem::take(&mut self.experience)
+    }
+
+    /// Takes back what [`Self::take_experience`] gave.
+    pub fn give_back(&mut self, experience: Experience) {
+        self.experience = experience;
+    }
+
+    /// Learns from all observations so far.
+    pub fn learn(&mut self) {
+        self.experience.refine(&mut self.tree);
+        (self.places, self.insights) = self.experience.insights(&self.tree);
+        self.pixels = PixelKnowledge::new(self.experience.pixels(), self.film);
+        self.lessons += 1;
+    }
+
+    /// No more lessons: forgets the observations.
+    pub fn conclude(&mut self) {
+        self.experience = Experience::default();
+    }
+
+    /// What is known of the pixels; nothing before the first lesson.
+    pub fn pixels(&self) -> &PixelKnowledge {
+        &self.pixels
+    }
+}

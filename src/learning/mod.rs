@@ -1,0 +1,27 @@
+//! What the paths of a render teach: where light comes from, how much its estimates vary, and what following a path costs.
+//!
+//! A render learns in *lessons*: while it traces the first passes it records what every path segment brought back ([`Observation`]); after such
+//! a pass all of it is put into [`Knowledge`], which then stays as it is until the next lesson. So nothing that decides about a path has seen that
+//! path, and every image is unbiased whatever was learned, or mislearned. Observations are put in in a fixed order: the same knowledge
+//! for any number of threads.
+//!
+//! - [`cell_tree`]: space, divided where there are many observations
+//! - [`experience`]: sums of observations, for each cell and each of six classes of normals
+//! - [`gathering`]: observations of tiles, in their order
+//! - [`pixels`]: how bright the image is
+//! - [`square_warp`]: a histogram that warps the unit square from which directions are drawn
+//! - [`knowledge`]: what is asked while paths are traced
+
+pub mod cell_tree;
+pub mod experience;
+pub mod gathering;
+pub mod knowledge;
+pub mod pixels;
+pub mod square_warp;
+
+pub use cell_tree::CellTree;
+pub use experience::{Experience, Observation, PixelObservation};
+pub use gathering::{Gathering, Observations};
+pub use knowledge::{Insight, Knowledge};
+pub use pixels::PixelKnowledge;
+pub use square_warp::{Bin, SquareWarp};

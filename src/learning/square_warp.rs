@@ -1,0 +1,192 @@
+//! A warp of the unit square: importance sampling by a histogram, without losing what is even about the points.
+//!
+//! Directions are maps of points (u, v) of the unit square, so a density h over the square that has the mean 1 multiplies the density
+//! of each direction. Points are warped by the row, then the column: neighbours stay neighbours, and points that were spread evenly are
+//! spread evenly over h. Because h is mixed with a uniform part it is bounded from below, and so are weights from above.
+
+use serde::{Deserialize, Serialize};
+
+/// Rows and columns.
+pub const SIDE: usize = 8;
+
+/// The share of the histogram; the rest is uniform.
+const TRUST: f32 = 0.7;
+
+/// The largest number below 1.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// A part of the unit square: row and column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bin(u8);
+
+impl Bin {
+    /// The one in which the point (u, v) lies.
+    #[inline(always)]
+    pub fn of([u, v]: [f32; 2]) -> Self {
+        Self((SIDE * index(u) + index(v)) as u8)
+    }
+
+    /// Row and column.
+    #[inline(always)]
+    pub fn place(self) -> [usize; 2] {
+        let place = usize::from(self.0);
+        [place / SIDE % SIDE, place % SIDE]
+    }
+}
+
+#[inline(always)]
+fn index(u: f32) -> usize {
+    // Conversion saturates: what is no number, or below 0, is in the first.
+    ((u * SIDE as f32) as usize).min(SIDE - 1)
+}
+
+/// A density over the unit square, constant in each [`Bin`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SquareWarp {
+    /// Cumulative over rows; the last is [`SIDE`].
+    rows: [f32; SIDE],
+    /// Cumulative within each row; the last is [`SIDE`].
+    columns: [[f32; SIDE]; SIDE],
+}
+
+impl SquareWarp {
+    /// The density that is in proportion to `values`, not negative, but for its uniform part.
+    pub fn new(values: &[[f32; SIDE]; SIDE]) -> Self {
+        let bins = (SIDE * SIDE) as f32;
+        let mean = values.iter().flatten().sum::<f32>() / bins;
+        let scale = if mean > 0.0 && mean < f32::INFINITY {
+            TRUST / mean
+        } else {
+            0.0
+        };
+        let density = values.map(|row| row.map(|value| 1.0 - TRUST + scale * value));
+        let sums = density.map(|row| row.iter().sum::<f32>());
+        Self {
+            rows: cumulative(&sums),
+            columns: density.map(|row| cumulative(&row)),
+        }
+    }
+
+    /// Where the point (u, v) of [0, 1)^2 goes, and the density there.
+    #[inline(always)]
+    pub fn warp(&self, [u, v]: [f32; 2]) -> ([f32; 2], f32) {
+        let (row, u, rows) = step(&self.rows, u);
+        let (_, v, columns) = step(&self.columns[row], v);
+        ([u, v], rows * columns)
+    }
+
+    /// The density in a bin: its mean over all is 1.
+    #[inline(always)]
+    pub fn density(&self, bin: Bin) -> f32 {
+        let [row, column] = bin.place();
+        height(&self.rows, row) * height(&self.columns[row], column)
+    }
+}
+
+/// The sums of all up to each, scaled so that the last is [`SIDE`].
+fn cumulative(values: &[f32; SIDE]) -> [f32; SIDE] {
+    let scale = SIDE as f32 / values.iter().sum::<f32>();
+    let mut sum = 0.0;
+    let mut sums = values.map(|value| {
+        sum += value * scale;
+        sum
+    });
+    sums[SIDE - 1] = SIDE as f32;
+    sums
+}
+
+#[inline(always)]
+fn height(cumulative: &[f32; SIDE], index: usize) -> f32 {
+    let before = if index > 0 {
+        cumulative[index - 1]
+    } else {
+        0.0
+    };
+    cumulative[index] - before
+}
+
+/// The step of the distribution that u falls on, where in [0, 1) the inverse of the distribution is there, and how high the step is.
+#[inline(always)]
+fn step(cumulative: &[f32; SIDE], u: f32) -> (usize, f32, f32) {
+    let target = u * SIDE as f32;
+    let index = cumulative[..SIDE - 1]
+        .iter()
+        .map(|&sum| usize::from(sum <= target))
+        .sum::<usize>();
+    let before = if index > 0 {
+        cumulative[index - 1]
+    } else {
+        0.0
+    };
+    let height = cumulative[index] - before;
+    let inside = ((target - before) / height).clamp(0.0, BELOW_ONE);
+    let warped = (index as f32 + inside) * (1.0 / SIDE as f32);
+    // Rounding must not carry it into the next bin.
+    let end = ((index + 1) as f32 * (1.0 / SIDE as f32)).next_down();
+    (index, warped.min(end), height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn values() -> impl Strategy<Value = [[f32; SIDE]; SIDE]> {
+        let value = prop_oneof![Just(0.0_f32), 0.0..1.0_f32, 1.0..1e6_f32];
+        let row = proptest::array::uniform8(value);
+        proptest::array::uniform8(row)
+    }
+
+    proptest! {
+        #[test]
+        fn the_density_has_mean_one_and_is_bounded_from_below(values in values()) {
+            let warp = SquareWarp::new(&values);
+            let bins = (0..64).map(|place| warp.density(Bin(place)));
+            let mean: f32 = bins.clone().sum::<f32>() / 64.0;
+            prop_assert!((mean - 1.0).abs() < 1e-4, "{mean}");
+            for density in bins {
+                prop_assert!(density > 0.29, "{density}");
+            }
+        }
+
+        #[test]
+        fn points_go_where_the_density_says(values in values(), u in 0.0..1.0_f32, v in 0.0..1.0_f32) {
+            let warp = SquareWarp::new(&values);
+            let (point, density) = warp.warp([u, v]);
+            prop_assert!(point.iter().all(|u| (0.0..1.0).contains(u)));
+            prop_assert_eq!(density, warp.density(Bin::of(point)));
+        }
+    }
+
+    /// Chi-square over the bins: points of a fine lattice, warped, lie in each bin as its density says.
+    #[test]
+    fn warped_points_have_the_density() {
+        let mut values = [[0.0; SIDE]; SIDE];
+        values[2][5] = 10.0;
+        values[2][6] = 1.0;
+        values[7][0] = 3.0;
+        let warp = SquareWarp::new(&values);
+        const N: usize = 512;
+        let mut counts = [0.0; 64];
+        for i in 0..N * N {
+            let point = [i / N, i % N].map(|k| (k as f32 + 0.5) / N as f32);
+            counts[usize::from(Bin::of(warp.warp(point).0).0)] += 1.0;
+        }
+        for (place, count) in (0..).zip(counts) {
+            let share = count / (N * N) as f32 * 64.0;
+            let density = warp.density(Bin(place));
+            assert!((share - density).abs() < 0.02 * density, "{place}: {share} {density}");
+        }
+        assert!(warp.density(Bin::of([2.5 / 8.0, 5.5 / 8.0])) > 20.0);
+    }
+
+    #[test]
+    fn nothing_learned_is_uniform() {
+        for value in [0.0, f32::INFINITY, f32::NAN] {
+            let warp = SquareWarp::new(&[[value; SIDE]; SIDE]);
+            let (point, density) = warp.warp([0.3, 0.9]);
+            assert_eq!(density, 1.0, "{value}");
+            assert!((point[0] - 0.3).abs() < 1e-6 && (point[1] - 0.9).abs() < 1e-6);
+        }
+    }
+}
