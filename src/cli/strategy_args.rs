@@ -1,14 +1,16 @@
 //! Which strategy, and its settings.
 
 use clap::Args;
-use cohort::walk::{Rounding, Scope, SettingError, Strategy, StrategyKind, StrategyOptions};
+use cohort::walk::{
+    CountRule, Objective, Rounding, Scope, SettingError, Strategy, StrategyKind, StrategyOptions,
+};
 
 /// Which strategy, and its settings.
 #[derive(Args)]
 #[command(next_help_heading = "Strategy")]
 pub struct StrategyArgs {
     /// Who decides how long paths are followed: fixed-depth, roulette, throughput-roulette, go-with-the-winners,
-    /// particle-filter or paper-particle-filter
+    /// adjoint-roulette, ears, particle-filter or paper-particle-filter
     #[arg(long, value_name = "NAME", default_value_t = StrategyKind::Roulette)]
     strategy: StrategyKind,
 
@@ -24,7 +26,15 @@ pub struct StrategyArgs {
     #[arg(long, value_name = "N")]
     from_depth: Option<u32>,
 
-    /// go-with-the-winners, particle-filter: most children of a vertex of full importance [default: 10, or 1 for
+    /// particle-filter: by what children are counted: learned or importance [default: learned]
+    #[arg(long, value_name = "NAME")]
+    rule: Option<CountRule>,
+
+    /// ears, particle-filter: which error is to become small: relative or mse [default: relative]
+    #[arg(long, value_name = "NAME")]
+    objective: Option<Objective>,
+
+    /// go-with-the-winners, particle-filter by importance: most children of a vertex of full importance [default: 10, or 1 for
     /// the populations pixel and tile]
     #[arg(long, value_name = "N")]
     n_max: Option<f32>,
@@ -53,6 +63,8 @@ impl StrategyArgs {
             threshold: self.threshold,
             termination: self.termination,
             from_depth: self.from_depth.or(of_scene),
+            rule: self.rule,
+            objective: self.objective,
             n_max: self.n_max,
             population: self.population,
             counts: self.counts,

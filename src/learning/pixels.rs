@@ -16,8 +16,8 @@ const DARKEST: f32 = 0.01;
 pub struct PixelKnowledge {
     /// Of every pixel, row by row: the mean radiance of it and its neighbours.
     brightness: Vec<f32>,
-    /// The square root of the mean cost of a path over the mean of its relative variance.
-    factor: f32,
+    relative_factor: f32,
+    absolute_factor: f32,
 }
 
 impl PixelKnowledge {
@@ -50,23 +50,29 @@ impl PixelKnowledge {
             });
         let darkest = DARKEST * all.mean();
         let brightness: Vec<f32> = both.iter().map(|sum| sum.mean().max(darkest)).collect();
-        let (mut rays, mut variance, mut paths) = (0.0, 0.0, 0.0);
+        let (mut rays, mut relative, mut absolute) = (0.0, 0.0, 0.0);
         for (pixel, &brightness) in pixels.iter().zip(&brightness) {
             let count = f64::from(pixel.paths);
             if pixel.paths > 0 && brightness > 0.0 {
                 let mean = f64::from(pixel.radiance) / count;
                 let spread = (f64::from(pixel.square) / count - mean * mean).max(0.0);
-                variance += count * spread / f64::from(brightness).powi(2);
+                absolute += count * spread;
+                relative += count * spread / f64::from(brightness).powi(2);
                 rays += f64::from(pixel.rays);
-                paths += count;
             }
         }
-        let factor = if variance > 0.0 && paths > 0.0 {
-            (rays / variance).sqrt() as f32
-        } else {
-            1.0
+        let factor = |variance: f64| {
+            if variance > 0.0 {
+                (rays / variance).sqrt() as f32
+            } else {
+                1.0
+            }
         };
-        Self { brightness, factor }
+        Self {
+            brightness,
+            relative_factor: factor(relative),
+            absolute_factor: factor(absolute),
+        }
     }
 
     /// The mean radiance about pixel number `pixel`; 0 while nothing is known.
@@ -75,9 +81,14 @@ impl PixelKnowledge {
         self.brightness.get(pixel as usize).copied().unwrap_or(0.0)
     }
 
-    /// The square root of the mean cost of a path, in rays, over the mean of its relative variance.
-    pub fn factor(&self) -> f32 {
-        self.factor
+    /// The square root of the mean cost of a path, in rays, over the mean of its variance relative to the brightness of its pixel.
+    pub fn relative_factor(&self) -> f32 {
+        self.relative_factor
+    }
+
+    /// The square root of the mean cost of a path, in rays, over the mean of its variance.
+    pub fn absolute_factor(&self) -> f32 {
+        self.absolute_factor
     }
 }
 

@@ -175,7 +175,10 @@ mod tests {
         for (place, count) in (0..).zip(counts) {
             let share = count / (N * N) as f32 * 64.0;
             let density = warp.density(Bin(place));
-            assert!((share - density).abs() < 0.02 * density, "{place}: {share} {density}");
+            assert!(
+                (share - density).abs() < 0.02 * density,
+                "{place}: {share} {density}"
+            );
         }
         assert!(warp.density(Bin::of([2.5 / 8.0, 5.5 / 8.0])) > 20.0);
     }

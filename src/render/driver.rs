@@ -110,6 +110,7 @@ impl Render {
             },
             samples: scene.integrator.samples,
             sampler: settings.sampler,
+            guiding: settings.guiding,
             hide_emitters: scene.integrator.hide_emitters,
         };
         let strategy = std::mem::replace(&mut settings.strategy, Box::new(FixedDepth));
@@ -169,10 +170,8 @@ impl Render {
         } else {
             film
         };
-        let knowledge = self
-            .settings
-            .guiding
-            .then(|| Knowledge::nothing(self.engine.bounds(), size));
+        let learns = self.settings.guiding || self.engine.strategy().learns();
+        let knowledge = learns.then(|| Knowledge::nothing(self.engine.bounds(), size));
         RenderState::new(film, knowledge, seed)
     }
 
@@ -252,8 +251,8 @@ impl Render {
         rayon::broadcast(|context| {
             let tracer = &mut **unpoisoned(&self.tracers[context.index()]);
             loop {
-                let next = unpoisoned(&missing)
-                    .next_if(|(_, (tile, _))| watch.allows(tile, pass.samples));
+                let next =
+                    unpoisoned(&missing).next_if(|(_, (tile, _))| watch.allows(tile, pass.samples));
                 let Some((index, (tile, done))) = next else {
                     break;
                 };
@@ -282,7 +281,9 @@ impl Render {
             }
         });
         if learns && let Some(knowledge) = &mut state.knowledge {
-            let gathering = gathering.into_inner().unwrap_or_else(PoisonError::into_inner);
+            let gathering = gathering
+                .into_inner()
+                .unwrap_or_else(PoisonError::into_inner);
             knowledge.give_back(gathering.into_experience());
         }
     }

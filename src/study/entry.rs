@@ -128,7 +128,7 @@ pub enum SpecError {
     },
     /// A setting that no strategy has.
     #[error(
-        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, n-max, population, counts, sampler and guiding"
+        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, rule, objective, n-max, population, counts, sampler and guiding"
     )]
     Unknown(String),
 }
@@ -151,6 +151,8 @@ impl FromStr for StrategySpec {
                 "termination" => options.termination = Some(number("termination", value)?),
                 "from-depth" => options.from_depth = Some(number("from-depth", value)?),
                 "n-max" => options.n_max = Some(number("n-max", value)?),
+                "rule" => options.rule = Some(value.parse()?),
+                "objective" => options.objective = Some(value.parse()?),
                 "population" => options.population = Some(value.parse()?),
                 "sampler" => sampler = Some(value.parse()?),
                 "guiding" => guiding = Some(on_or_off("guiding", value)?),

@@ -7,8 +7,9 @@ use glam::Vec3;
 use super::lineage::Birth;
 use super::variant::Variant;
 use crate::embree::{Hits, Rays};
-use crate::learning::Knowledge;
+use crate::film::FilmTile;
 use crate::lanes::{CHUNK, VectorColumn};
+use crate::learning::Knowledge;
 use crate::room::{gather, make_room, resize};
 use crate::sampling::{SequencePoint, SolidAnglePdf};
 use crate::scene::{HitCoordinates, Refraction};
@@ -21,6 +22,8 @@ pub(super) struct CameraPaths<C: Colour> {
     pub pixels: Range<u32>,
     /// How many belong to each of those.
     pub samples: u32,
+    /// How bright each of those is, as far as that was learned.
+    pub brightness: Vec<f32>,
     /// The wavelengths that the path carries.
     pub wavelengths: Vec<C::Wavelengths>,
     /// How they were chosen.
@@ -116,6 +119,7 @@ impl<C: Colour> CameraPaths<C> {
         Self {
             pixels: 0..0,
             samples: 1,
+            brightness: Vec::new(),
             wavelengths: Vec::new(),
             wavelength_draw: Vec::new(),
             radiance: Vec::new(),
@@ -134,6 +138,16 @@ impl<C: Colour> CameraPaths<C> {
         make_room(&mut self.radiance, count);
         make_room(&mut self.filter_weight, count);
         count
+    }
+
+    /// Finds out how bright the pixels are, which are those of `tile` on a film of so many columns.
+    pub fn find_brightness(&mut self, knowledge: &Knowledge, tile: &FilmTile, width: u32) {
+        make_room(&mut self.brightness, self.pixels.len());
+        let brightness = |pixel: u32| {
+            let (x, y) = tile.position(pixel as usize);
+            knowledge.pixels().brightness(y * width + x)
+        };
+        self.brightness.extend(self.pixels.clone().map(brightness));
     }
 
     /// The pixel of the tile to which a path belongs.

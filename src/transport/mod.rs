@@ -28,6 +28,7 @@ mod lineage;
 mod matte;
 mod offset;
 mod pipeline;
+mod recollection;
 mod recorded_rays;
 mod scatter;
 mod settings;

@@ -6,6 +6,7 @@ use super::arrange::Arrangement;
 use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
 use super::engine::{Engine, TileJob};
 use super::lineage::Lineage;
+use super::recollection::Recollection;
 use super::recorded_rays::RecordedRays;
 use super::settings::DirectLight;
 use super::stages::{Stage, Stopwatch};
@@ -34,6 +35,7 @@ pub(super) struct Pipeline<C: Colour, V: Variant> {
     vertices: Vertices<C, V>,
     shadow: ShadowRays<C>,
     particles: Particles,
+    recollection: Recollection,
     offspring: Offspring,
     /// What was observed.
     pub lineage: Lineage,
@@ -52,6 +54,7 @@ impl<C: Colour, V: Variant> Default for Pipeline<C, V> {
             vertices: Vertices::new(),
             shadow: ShadowRays::new(),
             particles: Particles::default(),
+            recollection: Recollection::default(),
             offspring: Offspring::default(),
             lineage: Lineage::default(),
             statistics: TraceStatistics::default(),
@@ -97,6 +100,10 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             &mut self.segments,
         );
         stopwatch.lap(Stage::Camera, &mut self.statistics.stages);
+        if let Some(knowledge) = job.knowledge {
+            let width = engine.scene().film.crop.size.width;
+            self.paths.find_brightness(knowledge, tile, width);
+        }
         self.lineage.restart();
         self.follow(engine, job, sampler, &mut stopwatch);
         if job.learns {
@@ -119,6 +126,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
         let max_depth = engine.settings.max_depth.unwrap_or(u32::MAX);
         let next_event = engine.settings.direct_light == DirectLight::NextEvent
             && !engine.scene.emitters.is_empty();
+        let guide = job.knowledge.filter(|_| engine.settings.guiding);
         for depth in 0..max_depth {
             if self.segments.len() == 0 {
                 return;
@@ -177,7 +185,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                     &self.vertices,
                     depth,
                     sampler,
-                    job.knowledge,
+                    guide,
                     &mut self.shadow,
                 );
                 stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
@@ -193,12 +201,20 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 );
                 stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
             }
+            let learned = job
+                .knowledge
+                .filter(|_| engine.strategy().learns())
+                .and_then(|knowledge| {
+                    self.recollection
+                        .recall(knowledge, &self.paths, &self.vertices)
+                });
             self.statistics.walk += walk_stage::decide(
                 engine.strategy(),
                 &self.vertices,
                 job.samples,
                 depth,
                 &mut self.particles,
+                learned,
                 sampler,
                 &mut self.offspring,
             );
@@ -214,7 +230,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 self.offspring.children(),
                 depth,
                 sampler,
-                job.knowledge,
+                guide,
                 &mut self.segments,
             );
             stopwatch.lap(Stage::Scatter, &mut self.statistics.stages);

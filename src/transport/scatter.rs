@@ -71,7 +71,10 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         let parents = children.iter().map(|child| child.parent as usize);
         let bsdfs = parents.clone().map(|parent| &vertices.bsdf[parent]);
         if let Some(knowledge) = knowledge {
-            guidance.ask(knowledge, parents.clone().map(|parent| vertices.address[parent]));
+            guidance.ask(
+                knowledge,
+                parents.clone().map(|parent| vertices.address[parent]),
+            );
             guidance.warp(bsdfs.clone(), &mut numbers);
         }
         V::Scattering::sample(bsdfs.clone(), &normals, &numbers, &mut samples);

@@ -27,6 +27,8 @@ pub struct TransportSettings {
     pub samples: SurfaceSamples,
     /// Where the random numbers of paths come from.
     pub sampler: SamplerKind,
+    /// Whether directions are guided by what was learned.
+    pub guiding: bool,
     /// Whether emitters are invisible to the camera.
     pub hide_emitters: bool,
 }

@@ -6,7 +6,7 @@ use super::batch::{Particles, Vertices};
 use super::variant::{Scattering, Variant};
 use crate::sampling::Sampler;
 use crate::spectrum::{Colour, SpectrumArithmetic};
-use crate::walk::{Offspring, Population, Scalar, Scope, Strategy, WalkReport};
+use crate::walk::{Learned, Offspring, Population, Scalar, Scope, Strategy, WalkReport};
 
 /// Shows the vertices to the strategy as a population and lets it fill `offspring`.
 ///
@@ -17,6 +17,7 @@ pub(super) fn decide<C: Colour, V: Variant>(
     samples: u32,
     depth: u32,
     particles: &mut Particles,
+    learned: Option<Learned<'_>>,
     sampler: &mut Sampler,
     offspring: &mut Offspring,
 ) -> WalkReport {
@@ -35,6 +36,7 @@ pub(super) fn decide<C: Colour, V: Variant>(
         group: &particles.group,
         depth,
         points: sampler.decisions(&vertices.point),
+        learned,
     };
     strategy.resample(&population, sampler.stream(), offspring)
 }

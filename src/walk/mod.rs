@@ -14,7 +14,9 @@
 //!
 //! - [`population`], [`offspring`]: what goes in and what comes out
 //! - [`strategy`]: the three things that make a strategy
-//! - [`fixed_depth`], [`roulette`], [`throughput_roulette`], [`go_with_the_winners`], [`particle_filter`]: one rule each
+//! - [`fixed_depth`], [`roulette`], [`throughput_roulette`], [`go_with_the_winners`], [`particle_filter`],
+//!   [`adjoint_roulette`], [`ears`]: one rule each
+//! - [`learned`]: what a render has learned of its particles, for the last three
 //! - [`expected_count`]: nu as an exact number
 //! - [`resampling`]: the ways of rounding
 //! - [`options`], [`error`]: strategies by name, with checked settings
@@ -32,6 +34,7 @@
 //!     group: &[0; 4],
 //!     depth: 1,
 //!     points: None,
+//!     learned: None,
 //! };
 //! let mut random = RandomStream::new(StreamKey { seed: 1, tile: 0, pass: 0 });
 //! let mut offspring = Offspring::new();
@@ -44,10 +47,13 @@
 //! # }
 //! ```
 
+pub mod adjoint_roulette;
+pub mod ears;
 pub mod error;
 pub mod expected_count;
 pub mod fixed_depth;
 pub mod go_with_the_winners;
+pub mod learned;
 pub mod offspring;
 pub mod options;
 pub mod particle_filter;
@@ -60,13 +66,16 @@ pub mod throughput_roulette;
 #[cfg(test)]
 mod tests;
 
+pub use adjoint_roulette::AdjointRoulette;
+pub use ears::Ears;
 pub use error::SettingError;
 pub use expected_count::ExpectedCount;
 pub use fixed_depth::FixedDepth;
 pub use go_with_the_winners::GoWithTheWinners;
+pub use learned::{Learned, Objective};
 pub use offspring::{Child, Offspring};
 pub use options::{StrategyKind, StrategyOptions};
-pub use particle_filter::ParticleFilter;
+pub use particle_filter::{CountRule, ParticleFilter};
 pub use population::{Population, WalkReport};
 pub use resampling::{ResidualRest, Rounding};
 pub use roulette::Roulette;

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::error::list;
 use super::{
-    FixedDepth, GoWithTheWinners, ParticleFilter, Roulette, Rounding, Scope, SettingError,
-    Strategy, ThroughputRoulette,
+    AdjointRoulette, CountRule, Ears, FixedDepth, GoWithTheWinners, Objective, ParticleFilter,
+    Roulette, Rounding, Scope, SettingError, Strategy, ThroughputRoulette,
 };
 
 /// The strategies that can be asked for by name.
@@ -25,6 +25,10 @@ pub enum StrategyKind {
     GoWithTheWinners,
     /// [`ParticleFilter`].
     ParticleFilter,
+    /// [`AdjointRoulette`].
+    AdjointRoulette,
+    /// [`Ears`].
+    Ears,
     /// [`ParticleFilter`] with the settings of [`ParticleFilter::paper`].
     PaperParticleFilter,
 }
@@ -38,6 +42,10 @@ pub struct StrategyOptions {
     pub termination: Option<f32>,
     /// The first reflection at stake in [`ThroughputRoulette`].
     pub from_depth: Option<u32>,
+    /// By what [`ParticleFilter`] chooses the expected counts.
+    pub rule: Option<CountRule>,
+    /// Which error [`Ears`] and [`ParticleFilter`] make small.
+    pub objective: Option<Objective>,
     /// n_max of [`GoWithTheWinners`] and [`ParticleFilter`].
     pub n_max: Option<f32>,
     /// The joint population of [`ParticleFilter`].
@@ -53,6 +61,8 @@ impl StrategyOptions {
             ("threshold", self.threshold.is_some()),
             ("termination", self.termination.is_some()),
             ("from-depth", self.from_depth.is_some()),
+            ("rule", self.rule.is_some()),
+            ("objective", self.objective.is_some()),
             ("n-max", self.n_max.is_some()),
             ("population", self.population.is_some()),
             ("counts", self.counts.is_some()),
@@ -66,11 +76,13 @@ impl StrategyOptions {
 
 impl StrategyKind {
     /// Every strategy.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::FixedDepth,
         Self::Roulette,
         Self::ThroughputRoulette,
         Self::GoWithTheWinners,
+        Self::AdjointRoulette,
+        Self::Ears,
         Self::ParticleFilter,
         Self::PaperParticleFilter,
     ];
@@ -82,6 +94,8 @@ impl StrategyKind {
             Self::Roulette => Roulette::NAME,
             Self::ThroughputRoulette => ThroughputRoulette::NAME,
             Self::GoWithTheWinners => GoWithTheWinners::NAME,
+            Self::AdjointRoulette => AdjointRoulette::NAME,
+            Self::Ears => Ears::NAME,
             Self::ParticleFilter => ParticleFilter::NAME,
             Self::PaperParticleFilter => "paper-particle-filter",
         }
@@ -90,11 +104,12 @@ impl StrategyKind {
     /// The settings that the strategy has.
     pub fn settings(self) -> &'static [&'static str] {
         match self {
-            Self::FixedDepth | Self::PaperParticleFilter => &[],
+            Self::FixedDepth | Self::AdjointRoulette | Self::PaperParticleFilter => &[],
+            Self::Ears => &["objective"],
             Self::Roulette => &["threshold", "termination"],
             Self::ThroughputRoulette => &["from-depth"],
             Self::GoWithTheWinners => &["n-max"],
-            Self::ParticleFilter => &["n-max", "population", "counts"],
+            Self::ParticleFilter => &["rule", "objective", "n-max", "population", "counts"],
         }
     }
 
@@ -118,18 +133,9 @@ impl StrategyKind {
             Self::GoWithTheWinners => Box::new(GoWithTheWinners::new(
                 options.n_max.unwrap_or(GoWithTheWinners::DEFAULT_N_MAX),
             )?),
-            Self::ParticleFilter => {
-                let population = options
-                    .population
-                    .unwrap_or(ParticleFilter::DEFAULT_POPULATION);
-                Box::new(ParticleFilter::new(
-                    options
-                        .n_max
-                        .unwrap_or(ParticleFilter::default_n_max(population)),
-                    population,
-                    options.counts.unwrap_or(ParticleFilter::DEFAULT_COUNTS),
-                )?)
-            }
+            Self::AdjointRoulette => Box::new(AdjointRoulette),
+            Self::Ears => Box::new(Ears::new(options.objective.unwrap_or_default())),
+            Self::ParticleFilter => Box::new(particle_filter(options)?),
             Self::PaperParticleFilter => Box::new(ParticleFilter::paper()),
         })
     }
@@ -152,6 +158,36 @@ impl StrategyKind {
                     _ => format!("it has {}", list(own)),
                 },
             }),
+        }
+    }
+}
+
+/// The filter that the options ask for.
+fn particle_filter(options: &StrategyOptions) -> Result<ParticleFilter, SettingError> {
+    let population = options
+        .population
+        .unwrap_or(ParticleFilter::DEFAULT_POPULATION);
+    let counts = options.counts.unwrap_or(ParticleFilter::DEFAULT_COUNTS);
+    let rule = options.rule.unwrap_or_default();
+    let foreign = match rule {
+        CountRule::Learned => options.n_max.map(|_| ("n-max", "rule=importance")),
+        CountRule::Importance => options.objective.map(|_| ("objective", "rule=learned")),
+    };
+    if let Some((setting, with)) = foreign {
+        return Err(SettingError::NotASetting {
+            strategy: ParticleFilter::NAME,
+            setting,
+            known: format!("that belongs to {with}, and this is rule={rule}"),
+        });
+    }
+    match rule {
+        CountRule::Learned => {
+            ParticleFilter::learned(options.objective.unwrap_or_default(), population, counts)
+        }
+        CountRule::Importance => {
+            let n_max = options.n_max;
+            let n_max = n_max.unwrap_or(ParticleFilter::default_n_max(population));
+            ParticleFilter::new(n_max, population, counts)
         }
     }
 }

@@ -1,7 +1,18 @@
 //! # `particle-filter`
 //!
 //! Resamples whole populations (paper section 4.3, figure 5): the paths are the particles of a particle filter, a
-//! reflection is its time step, and what the resampling equalises is the importance,
+//! reflection is its time step. All particles of a population round their expected counts jointly.
+//!
+//! **By what was learned** (`rule` `learned`, the default), the counts make variance times cost least:
+//!
+//! ```text
+//! nu_k = W_k a_k / I sqrt(E[v^2] / c) sqrt(image cost / image relative variance)
+//! ```
+//!
+//! v is what a child brings back, c the rays that it takes, I the brightness of the pixel. A dead zone leaves particles alone for which nu lies
+//! between 2/3 and 3/2, others are drawn to its edge; nu is kept from 0.02 to 20. Before anything is learned, it is W a.
+//!
+//! **By importance** (`rule` `importance`), as the paper has it, the resampling equalises the importance:
 //!
 //! ```text
 //! nu_k = n_max W_k a_k
@@ -10,29 +21,77 @@
 //!
 //! m' children are drawn, particle k having nu_k of them on average. (Figure 5 divides the importance of a child of j by the
 //! step of the cumulative sum at k in one place and at j in another; it must be at j.) After each step all particles of
-//! all populations have the same scalar importance W a / nu = 1 / n_max: weights do not drift apart, and each surviving
-//! path is worth its ray.
+//! all populations have the same scalar importance W a / nu = 1 / n_max.
 //!
 //! **Settings**
+//! - `rule`: `learned` (default) or `importance`.
+//! - `objective`, of the learned rule: `relative` (default), the error relative to each pixel's brightness, or `mse`, where I is 1 everywhere.
 //! - `population`, whose particles are resampled together: `camera-path` (the offspring of one camera path, as the paper
 //!   has it), `pixel` (default) or `tile`. W is relative to each particle's own camera path in any case.
-//! - `n-max`, how many particles the method aims at per camera path, positive and at most 1024. Default: 10 for `camera-path`,
+//! - `n-max`, of the rule by importance: how many particles the method aims at per camera path, positive and at most 1024. Default: 10 for `camera-path`,
 //!   where it splits the first vertex as go-with-the-winners does; 1 for `pixel` and `tile`, where there are many particles
 //!   without splitting.
 //! - `counts`, how the integers are drawn: `independent`, `multinomial`, `stratified`, `systematic` (default), `residual` or
 //!   `residual-stratified`; see [`Rounding`].
 //!
-//! The preset `paper-particle-filter` is the paper's literal form: `camera-path`, 10, `multinomial`.
+//! The preset `paper-particle-filter` is the paper's literal form: `importance`, `camera-path`, 10, `multinomial`.
 //!
-//! **When it wins:** in large populations whose neighbours contribute alike, with `systematic` counts, whose noise cancels
-//! between neighbours. `multinomial` counts add noise that independent roulette would not have, the more the larger the
-//! population; they are here because the paper has them.
+//! **When it wins:** by what was learned, where paths differ much in what they are worth, and with the sampler `array-qmc`, which sorts
+//! populations so that neighbours contribute alike: then `systematic` counts cancel each other's noise. `multinomial` counts add noise that
+//! independent roulette would not have, the more the larger the population; they are here because the paper has them.
 
-use super::{ExpectedCount, Population, Rounding, Scalar, Scope, SettingError, Strategy};
+use std::fmt::{self, Display};
+use std::str::FromStr;
 
-/// Resamples each population in proportion to importance; see the [module](self).
+use serde::Serialize;
+
+use super::ears::BOUNDS;
+use super::{
+    ExpectedCount, Objective, Population, Rounding, Scalar, Scope, SettingError, Strategy,
+};
+
+/// Particles for which the learned nu lies between 1 and this, or its reciprocal, are left alone.
+const DEAD_ZONE: f32 = 1.5;
+
+/// By what a filter chooses the expected counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CountRule {
+    /// What was learned.
+    #[default]
+    Learned,
+    /// Importance alone.
+    Importance,
+}
+
+impl CountRule {
+    /// Every rule.
+    pub const ALL: [Self; 2] = [Self::Learned, Self::Importance];
+}
+
+impl Display for CountRule {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Learned => "learned",
+            Self::Importance => "importance",
+        })
+    }
+}
+
+impl FromStr for CountRule {
+    type Err = SettingError;
+
+    fn from_str(text: &str) -> Result<Self, SettingError> {
+        SettingError::choose("rule", text, &Self::ALL)
+    }
+}
+
+/// Resamples each population; see the [module](self).
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleFilter {
+    /// That of the learned rule; `None` by importance.
+    objective: Option<Objective>,
+    /// By importance: how many particles there are to be.
     n_max: f32,
     population: Scope,
     counts: Rounding,
@@ -46,7 +105,22 @@ impl ParticleFilter {
     /// The way of drawing counts unless another is chosen.
     pub const DEFAULT_COUNTS: Rounding = Rounding::Systematic;
 
-    /// A filter that aims at `n_max` particles per camera path in each `population` and draws integers by `counts`.
+    /// A filter by what was learned.
+    ///
+    /// # Errors
+    /// If `population` is [`Scope::Particle`].
+    pub fn learned(
+        objective: Objective,
+        population: Scope,
+        counts: Rounding,
+    ) -> Result<Self, SettingError> {
+        Ok(Self {
+            objective: Some(objective),
+            ..Self::new(1.0, population, counts)?
+        })
+    }
+
+    /// A filter by importance that aims at `n_max` particles per camera path in each `population` and draws integers by `counts`.
     ///
     /// # Errors
     /// If `n_max` is not positive or above 1024, or if `population` is [`Scope::Particle`].
@@ -61,6 +135,7 @@ impl ParticleFilter {
             });
         }
         Ok(Self {
+            objective: None,
             n_max,
             population,
             counts,
@@ -80,6 +155,7 @@ impl ParticleFilter {
     pub fn paper() -> Self {
         let population = Scope::CameraPath;
         Self {
+            objective: None,
             n_max: Self::default_n_max(population),
             population,
             counts: Rounding::Multinomial,
@@ -93,8 +169,20 @@ impl Strategy for ParticleFilter {
     }
 
     fn settings(&self) -> Vec<(&'static str, String)> {
+        let rule = match self.objective {
+            Some(objective) => [
+                ("rule", CountRule::Learned.to_string()),
+                ("objective", objective.to_string()),
+            ],
+            None => [
+                ("rule", CountRule::Importance.to_string()),
+                ("n-max", self.n_max.to_string()),
+            ],
+        };
+        let [rule, of_rule] = rule;
         vec![
-            ("n-max", self.n_max.to_string()),
+            rule,
+            of_rule,
             ("population", self.population.to_string()),
             ("counts", self.counts.to_string()),
         ]
@@ -112,14 +200,36 @@ impl Strategy for ParticleFilter {
         Scalar::Mean
     }
 
+    fn learns(&self) -> bool {
+        self.objective.is_some()
+    }
+
     fn expected_counts(&self, population: &Population, nu: &mut [f32]) {
-        for ((nu, w), a) in nu
-            .iter_mut()
-            .zip(population.importance)
-            .zip(population.albedo)
-        {
+        let numbers = population.importance.iter().zip(population.albedo);
+        for (nu, (w, a)) in nu.iter_mut().zip(numbers) {
             *nu = self.n_max * w * a;
         }
+        let Some(objective) = self.objective else {
+            return;
+        };
+        let [least, most] = BOUNDS;
+        for (index, nu) in nu.iter_mut().enumerate() {
+            if let Some(learned) = population.known(index) {
+                let square = learned.square[index];
+                let count = learned.efficient_count(objective, index, square);
+                *nu = drawn_to_one(count).clamp(least, most);
+            }
+        }
+    }
+}
+
+/// The count on the edge of the dead zone for one outside, 1 for those inside.
+#[inline(always)]
+fn drawn_to_one(count: f32) -> f32 {
+    if count > 1.0 {
+        (count / DEAD_ZONE).max(1.0)
+    } else {
+        (count * DEAD_ZONE).min(1.0)
     }
 }
 

@@ -4,6 +4,7 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
+use super::Learned;
 use crate::sampling::Decisions;
 
 /// What a strategy may know of the particles of a batch: one entry per particle in every slice.
@@ -26,6 +27,8 @@ pub struct Population<'a> {
     /// Where the particles stand in sequences of evenly spread points, if they do: those who decide alone do so by
     /// these. Without them, all decisions are independent.
     pub points: Option<Decisions<'a>>,
+    /// What was learned of them, for strategies that [ask for it](super::Strategy::learns).
+    pub learned: Option<Learned<'a>>,
 }
 
 impl Population<'_> {
@@ -42,12 +45,24 @@ impl Population<'_> {
     /// Whether every slice has one entry per particle.
     pub(super) fn is_complete(&self) -> bool {
         let points = self.points.map_or(self.len(), |points| points.len());
-        [
-            self.albedo.len(),
-            self.shininess.len(),
-            self.group.len(),
-            points,
-        ] == [self.len(); 4]
+        let learned_is_complete = self
+            .learned
+            .is_none_or(|learned| learned.is_complete(self.len()));
+        learned_is_complete
+            && [
+                self.albedo.len(),
+                self.shininess.len(),
+                self.group.len(),
+                points,
+            ] == [self.len(); 4]
+    }
+
+    /// What was learned, if anything was of particle number `index`.
+    #[inline(always)]
+    pub(super) fn known(&self, index: usize) -> Option<&Learned<'_>> {
+        self.learned
+            .as_ref()
+            .filter(|learned| learned.square[index] >= 0.0)
     }
 
     /// Each particle in turn.

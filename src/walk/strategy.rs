@@ -29,6 +29,11 @@ pub trait Strategy: Send + Sync + Debug {
     /// Which scalar of the spectral throughput and albedo the strategy wants as importance and albedo.
     fn scalar(&self) -> Scalar;
 
+    /// Whether it asks for what the render has [learned](Population::learned).
+    fn learns(&self) -> bool {
+        false
+    }
+
     /// Writes the wished-for nu of every particle into `nu`.
     ///
     /// What it writes for a particle with importance or albedo zero, or with impossible numbers, does not count:

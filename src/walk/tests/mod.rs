@@ -55,6 +55,7 @@ impl Particles {
             group: &self.group,
             depth,
             points: None,
+            learned: None,
         }
     }
 }
