@@ -52,6 +52,17 @@ pub struct PixelObservation {
 }
 
 impl PixelObservation {
+    /// The variance of the radiance of its paths; about `brightness`, where there is only one.
+    pub(super) fn variance(&self, brightness: f64) -> f64 {
+        let count = f64::from(self.paths);
+        let [mean, square] = [self.radiance, self.square].map(|sum| f64::from(sum) / count);
+        if self.paths > 1 {
+            ((square - mean * mean) * count / (count - 1.0)).max(0.0)
+        } else {
+            (mean - brightness).powi(2)
+        }
+    }
+
     fn add(&mut self, other: &Self) {
         if !(other.square >= 0.0 && other.square < f32::INFINITY) {
             return;

@@ -52,12 +52,11 @@ impl PixelKnowledge {
         let brightness: Vec<f32> = both.iter().map(|sum| sum.mean().max(darkest)).collect();
         let (mut rays, mut relative, mut absolute) = (0.0, 0.0, 0.0);
         for (pixel, &brightness) in pixels.iter().zip(&brightness) {
-            let count = f64::from(pixel.paths);
+            let brightness = f64::from(brightness);
             if pixel.paths > 0 && brightness > 0.0 {
-                let mean = f64::from(pixel.radiance) / count;
-                let spread = (f64::from(pixel.square) / count - mean * mean).max(0.0);
-                absolute += count * spread;
-                relative += count * spread / f64::from(brightness).powi(2);
+                let variance = f64::from(pixel.paths) * pixel.variance(brightness);
+                absolute += variance;
+                relative += variance / (brightness * brightness);
                 rays += f64::from(pixel.rays);
             }
         }
