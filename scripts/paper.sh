@@ -28,7 +28,7 @@ cohort=${CARGO_TARGET_DIR:-target}/release/cohort
 mkdir -p "$output"
 for model in armadillo lucy; do
     "$cohort" compare "scenes/cornell-$model.xml" --size 800x800 --threads 1 \
-        --strategies roulette,go-with-the-winners,paper-particle-filter,particle-filter \
+        --strategies roulette,go-with-the-winners,paper-particle-filter,particle-filter:rule=importance \
         --time "$((minutes * 60 / repeat))s" --repeat "$repeat" --reference-time "${minutes}m" \
         -o "$output/$model"
 done

@@ -32,7 +32,7 @@ for model in armadillo lucy; do
         reference=(--reference-time "$((12 * seconds))s")
         [ -z "$references" ] || reference=(--reference "$references/$model-$colour/images/reference.exr")
         "$cohort" compare "scenes/cornell-$model.xml" --size 400x400 --threads 1 "${mode[@]}" \
-            --strategies throughput-roulette,roulette,particle-filter \
+            --strategies throughput-roulette,roulette,particle-filter:rule=importance \
             --peer "mitsuba:scalar_$colour,mitsuba:llvm_ad_$colour" \
             --time "${seconds}s" "${reference[@]}" -o "$output/$model-$colour"
     done

@@ -4,12 +4,12 @@
 //! have yet to see is alike, and points that are spread evenly over neighbours are spread evenly over each part of the scene
 //! (array-RQMC: L'Ecuyer, Lécot and Tuffin 2008; Gerber and Chopin 2015, "Sequential quasi-Monte Carlo").
 
-use std::ops::Range;
-
 use glam::Vec3;
+use multiversion::multiversion;
 
 use super::batch::Segments;
-use crate::room::make_room;
+use crate::embree::INVALID_GEOMETRY;
+use crate::room::{make_room, resize};
 use crate::sampling::Frame;
 use crate::spectrum::Colour;
 
@@ -22,6 +22,10 @@ const LEFT: u64 = 7;
 
 /// Where segments are sorted: the memory of one thread.
 pub(super) struct Arrangement<C: Colour> {
+    /// Where each segment ends, in world space.
+    ends: [Vec<f32>; 3],
+    /// Which way what it met faces, or [`LEFT`].
+    classes: Vec<u64>,
     keys: Vec<u64>,
     order: Vec<u32>,
     spare: Segments<C>,
@@ -30,6 +34,8 @@ pub(super) struct Arrangement<C: Colour> {
 impl<C: Colour> Default for Arrangement<C> {
     fn default() -> Self {
         Self {
+            ends: Default::default(),
+            classes: Vec::new(),
             keys: Vec::new(),
             order: Vec::new(),
             spare: Segments::new(),
@@ -40,74 +46,100 @@ impl<C: Colour> Default for Arrangement<C> {
 impl<C: Colour> Arrangement<C> {
     /// Sorts the segments of each pixel, of which there are `samples` camera paths, by what they have hit.
     pub fn arrange(&mut self, samples: u32, segments: &mut Segments<C>) {
-        make_room(&mut self.order, segments.len());
-        let mut start = 0;
-        for pixel in segments
+        let Self {
+            ends,
+            classes,
+            keys,
+            order,
+            spare,
+        } = self;
+        ends.iter_mut()
+            .for_each(|axis| resize(axis, segments.len()));
+        resize(classes, segments.len());
+        look(segments, ends, classes);
+        make_room(order, segments.len());
+        let pixels = segments
             .path
-            .chunk_by(|one, next| one / samples == next / samples)
-        {
-            let particles = start..start + pixel.len();
-            start = particles.end;
-            self.sort(segments, particles);
+            .chunk_by(|one, next| one / samples == next / samples);
+        for pixel in pixels {
+            let first = order.len();
+            let sorted = first..first + pixel.len().min(1 << NUMBER_BITS);
+            let ends = ends.each_ref().map(|axis| &axis[sorted.clone()]);
+            name(ends, &classes[sorted.clone()], keys);
+            keys.sort_unstable();
+            let number = |key: &u64| (first as u64 + (key & ((1 << NUMBER_BITS) - 1))) as u32;
+            order.extend(keys.iter().map(number));
+            order.extend((sorted.end..first + pixel.len()).map(|i| i as u32));
         }
-        self.spare.gather(segments, &self.order);
-        std::mem::swap(&mut self.spare, segments);
+        spare.gather(segments, order);
+        std::mem::swap(spare, segments);
     }
+}
 
-    /// Appends the `particles` of one pixel to the order.
-    fn sort(&mut self, segments: &Segments<C>, particles: Range<usize>) {
-        let first = particles.start as u32;
-        let most = particles.len().min(1 << NUMBER_BITS);
-        let (sorted, rest) = (
-            particles.start..particles.start + most,
-            particles.start + most..particles.end,
-        );
-        let places = Places::of(segments, sorted.clone());
-        self.keys.clear();
-        self.keys.extend((0..).zip(sorted).map(|(number, i)| {
-            let place = if segments.hits.is_hit(i) {
-                places.key(segments.end(i), segments.facing(i))
+/// Writes where each segment ends, and which way what it met faces.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn look<C: Colour>(segments: &Segments<C>, ends: &mut [Vec<f32>; 3], classes: &mut [u64]) {
+    let (rays, hits) = (&segments.rays, &segments.hits);
+    let lines = rays.origins().into_iter().zip(rays.directions());
+    for (axis, (origins, directions)) in ends.iter_mut().zip(lines) {
+        let numbers = origins.iter().zip(directions).zip(rays.tfars());
+        for (end, ((origin, direction), t)) in axis.iter_mut().zip(numbers) {
+            *end = origin + t * direction;
+        }
+    }
+    let ([nx, ny, nz], [dx, dy, dz]) = (hits.normals(), rays.directions());
+    let geometries = hits.geometry_ids();
+    for (i, class) in classes.iter_mut().enumerate() {
+        let normal = Vec3::new(nx[i], ny[i], nz[i]);
+        let facing = normal * -1.0_f32.copysign(normal.dot(Vec3::new(dx[i], dy[i], dz[i])));
+        let is_hit = geometries[i] != INVALID_GEOMETRY;
+        *class = if is_hit {
+            u64::from(Frame::class(facing))
+        } else {
+            LEFT
+        };
+    }
+}
+
+/// Makes `keys` those of the particles of one pixel, of which there are `ends` and `classes`: class, Morton code of the place in the box
+/// of all, number.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn name(ends: [&[f32]; 3], classes: &[u64], keys: &mut Vec<u64>) {
+    const CELLS: f32 = (1 << PLACE_BITS) as f32;
+    let [x, y, z] = ends.map(|axis| {
+        let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
+        for (&end, &class) in axis.iter().zip(classes) {
+            let counts = class != LEFT;
+            least = if counts & (end < least) { end } else { least };
+            most = if counts & (end > most) { end } else { most };
+        }
+        // Where all lie in one plane, the scale is infinite, and places are not numbers.
+        let scale = CELLS / (most - least);
+        move |i: usize| {
+            let place = (axis[i] - least) * scale;
+            let place = if place < CELLS - 1.0 {
+                place
             } else {
-                LEFT << (3 * PLACE_BITS)
+                CELLS - 1.0
             };
-            place << NUMBER_BITS | number
-        }));
-        self.keys.sort_unstable();
-        let number = |key: &u64| first + (key & ((1 << NUMBER_BITS) - 1)) as u32;
-        self.order.extend(self.keys.iter().map(number));
-        self.order.extend(rest.map(|i| i as u32));
-    }
-}
-
-/// The box of what the particles of a pixel have hit.
-struct Places {
-    least: Vec3,
-    scale: Vec3,
-}
-
-impl Places {
-    fn of<C: Colour>(segments: &Segments<C>, particles: Range<usize>) -> Self {
-        let hits = particles.filter(|&i| segments.hits.is_hit(i));
-        let nothing = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let (least, most) = hits.fold(nothing, |(least, most), i| {
-            let end = segments.end(i);
-            (least.min(end), most.max(end))
-        });
-        let cells = (1 << PLACE_BITS) as f32;
-        // Where all lie in one plane, the scale is infinite, or not a number; both end in one cell.
-        Self {
-            least,
-            scale: Vec3::splat(cells * (1.0 - f32::EPSILON)) / (most - least),
+            let place = if place > 0.0 { place } else { 0.0 };
+            spread(place as i32 as u32)
         }
-    }
-
-    /// The sort key of a hit at `position` on a surface that faces `normal`: its class, then the Morton code of its place.
-    fn key(&self, position: Vec3, normal: Vec3) -> u64 {
-        let [x, y, z] = ((position - self.least) * self.scale)
-            .to_array()
-            // Conversion saturates, and gives 0 for what is no number.
-            .map(|place| spread((place as u32).min((1 << PLACE_BITS) - 1)));
-        u64::from(Frame::class(normal)) << (3 * PLACE_BITS) | x << 2 | y << 1 | z
+    });
+    resize(keys, classes.len());
+    for (i, (key, &class)) in keys.iter_mut().zip(classes).enumerate() {
+        let place = if class == LEFT {
+            0
+        } else {
+            x(i) << 2 | y(i) << 1 | z(i)
+        };
+        *key = (class << (3 * PLACE_BITS) | place) << NUMBER_BITS | i as u64;
     }
 }
 
@@ -134,16 +166,17 @@ mod tests {
 
     #[test]
     fn neighbours_in_space_are_neighbours_in_the_order() {
-        let places = Places {
-            least: Vec3::ZERO,
-            scale: Vec3::new(4096.0, 4096.0, f32::INFINITY),
-        };
-        let key = |x, y, normal| places.key(Vec3::new(x, y, 0.0), normal);
-        assert!(key(0.1, 0.1, Vec3::X) < key(0.2, 0.1, Vec3::X));
-        assert!(key(0.49, 0.49, Vec3::X) < key(0.51, 0.0, Vec3::X));
-        assert!(key(0.9, 0.9, Vec3::X) < key(0.1, 0.1, Vec3::NEG_X));
-        assert!(key(0.9, 0.9, Vec3::NEG_Z) < LEFT << (3 * PLACE_BITS));
-        // Beyond the box, and where nothing can be said.
-        assert_eq!(key(f32::NAN, 9.0, Vec3::X), key(0.0, 1.0, Vec3::X));
+        let ends = [
+            [0.0, 1.0, 0.49, 0.51, 0.1, f32::NAN, 0.9],
+            [0.0, 1.0, 0.49, 0.1, 0.1, 0.0, 0.9],
+            [5.0; 7],
+        ];
+        // The fifth faces another way, the sixth has left the scene.
+        let classes = [2, 2, 2, 2, 1, LEFT, 2];
+        let mut keys = Vec::new();
+        name(ends.each_ref().map(|axis| &axis[..]), &classes, &mut keys);
+        keys.sort_unstable();
+        let order: Vec<u64> = keys.iter().map(|key| key % (1 << NUMBER_BITS)).collect();
+        assert_eq!(order, [4, 0, 2, 3, 6, 1, 5]);
     }
 }

@@ -206,24 +206,6 @@ impl<C: Colour> Segments<C> {
         gather(&mut self.births, &source.births, order);
     }
 
-    /// The end of a ray, in world space: where it met its shape, if it met one.
-    #[inline]
-    pub fn end(&self, index: usize) -> Vec3 {
-        let direction = Vec3::from(self.rays.direction(index));
-        Vec3::from(self.rays.origin(index)) + self.rays.tfar(index) * direction
-    }
-
-    /// The geometric normal, of any length, of the side that a ray met; in the space of the group where that stands in an instance.
-    #[inline]
-    pub fn facing(&self, index: usize) -> Vec3 {
-        let normal = Vec3::from(self.hits.normal(index));
-        if normal.dot(self.rays.direction(index).into()) > 0.0 {
-            -normal
-        } else {
-            normal
-        }
-    }
-
     /// Where a ray met its shape, if it met one.
     #[inline]
     pub fn hit(&self, index: usize) -> HitCoordinates {
