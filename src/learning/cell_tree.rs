@@ -48,7 +48,11 @@ impl CellTree {
         };
         let corner = 0.5 * (least + most) - 0.5 * side;
         let mut tree = Self {
-            corner: if corner.is_finite() { corner.to_array() } else { [0.0; 3] },
+            corner: if corner.is_finite() {
+                corner.to_array()
+            } else {
+                [0.0; 3]
+            },
             side,
             nodes: vec![root],
             cells: 1,
@@ -168,8 +172,8 @@ impl CellTree {
     fn tabulate(&mut self) {
         let side = 1_u32 << TABLE_BITS;
         let mut table = Vec::with_capacity(1 << (3 * TABLE_BITS));
-        for (x, y, z) in (0..side)
-            .flat_map(|x| (0..side).flat_map(move |y| (0..side).map(move |z| (x, y, z))))
+        for (x, y, z) in
+            (0..side).flat_map(|x| (0..side).flat_map(move |y| (0..side).map(move |z| (x, y, z))))
         {
             let mut index = 0;
             let mut node = self.nodes[0];
@@ -199,7 +203,9 @@ mod tests {
         assert_eq!(tree.cells(), 512);
         let centre = |k: u32| (k as f32 + 0.5) / 8.0;
         let mut seen = std::collections::BTreeSet::new();
-        for (x, y, z) in (0..8).flat_map(|x| (0..8).flat_map(move |y| (0..8).map(move |z| (x, y, z)))) {
+        for (x, y, z) in
+            (0..8).flat_map(|x| (0..8).flat_map(move |y| (0..8).map(move |z| (x, y, z))))
+        {
             let position = Vec3::new(centre(x), centre(y), centre(z));
             let cell = tree.cell(position);
             assert_eq!(tree.cell(position + 0.06), cell);
@@ -217,7 +223,9 @@ mod tests {
         let mut counts = vec![1.0; 8];
         counts[corner as usize] = 1000.0;
         let mut born = Vec::new();
-        tree.refine(&mut counts, 10.0, 1000, |cell, second| born.push((cell, second)));
+        tree.refine(&mut counts, 10.0, 1000, |cell, second| {
+            born.push((cell, second))
+        });
         // 1000 halved seven times is below 10.
         assert_eq!(tree.cells(), 7 + 128);
         assert_eq!(born.len(), 127);
@@ -228,7 +236,11 @@ mod tests {
             families[tree.cell(Vec3::splat(0.01)) as usize],
             families[tree.cell(Vec3::splat(0.4)) as usize]
         );
-        assert!(families.iter().all(|&family| (family as usize) < tree.nodes()));
+        assert!(
+            families
+                .iter()
+                .all(|&family| (family as usize) < tree.nodes())
+        );
     }
 
     #[test]
@@ -241,7 +253,10 @@ mod tests {
         let mut counts = vec![1e30];
         for _ in 0..100 {
             let first = deep.cell(Vec3::ZERO) as usize;
-            counts.iter_mut().enumerate().for_each(|(i, c)| *c = if i == first { 2.0 } else { 0.0 });
+            counts
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, c)| *c = if i == first { 2.0 } else { 0.0 });
             deep.refine(&mut counts, 1.0, u32::MAX, |_, _| ());
         }
         assert_eq!(deep.cells(), 3 * FINEST + 1);

@@ -123,11 +123,20 @@ impl Sums {
     /// These sums, filled up with `count` observations like the `others` that a cell has in common with its family.
     fn insight(&self, family: &Self) -> Insight {
         let mean = ratio(
-            family.bins.as_flattened().iter().map(|bin| bin.radiance).sum(),
+            family
+                .bins
+                .as_flattened()
+                .iter()
+                .map(|bin| bin.radiance)
+                .sum(),
             family.count,
         );
         let mut radiance = [[0.0; SIDE]; SIDE];
-        let bins = self.bins.as_flattened().iter().zip(family.bins.as_flattened());
+        let bins = self
+            .bins
+            .as_flattened()
+            .iter()
+            .zip(family.bins.as_flattened());
         for (radiance, (bin, family)) in radiance.as_flattened_mut().iter_mut().zip(bins) {
             let of_family = (family.radiance + OF_MEAN * mean) / (family.count + OF_MEAN);
             *radiance = (bin.radiance + OF_FAMILY * of_family) / (bin.count + OF_FAMILY);
@@ -193,7 +202,9 @@ impl Experience {
         self.places.resize(tree.cells() as usize * FRAME_CLASSES, 0);
         let count = |places: &[u32]| {
             let counts = places.iter().filter(|&&place| place > 0);
-            counts.map(|&place| f64::from(self.sums[place as usize - 1].count)).sum()
+            counts
+                .map(|&place| f64::from(self.sums[place as usize - 1].count))
+                .sum()
         };
         let mut counts: Vec<f64> = self.places.chunks(FRAME_CLASSES).map(count).collect();
         let Self { places, sums, .. } = self;
@@ -219,7 +230,11 @@ impl Experience {
     pub(super) fn insights(&self, tree: &CellTree) -> (Vec<u32>, Vec<Insight>) {
         let families = tree.families(TO_FAMILY);
         let mut of_families: std::collections::BTreeMap<(u32, usize), Sums> = Default::default();
-        let observed = self.places.iter().enumerate().filter(|(_, place)| **place > 0);
+        let observed = self
+            .places
+            .iter()
+            .enumerate()
+            .filter(|(_, place)| **place > 0);
         let family = |address: usize| (families[address / FRAME_CLASSES], address % FRAME_CLASSES);
         for (address, &place) in observed.clone() {
             let sums = of_families.entry(family(address)).or_default();

@@ -252,8 +252,8 @@ impl Render {
         rayon::broadcast(|context| {
             let tracer = &mut **unpoisoned(&self.tracers[context.index()]);
             loop {
-                let next = unpoisoned(&missing)
-                    .next_if(|(_, (tile, _))| watch.allows(tile, pass.samples));
+                let next =
+                    unpoisoned(&missing).next_if(|(_, (tile, _))| watch.allows(tile, pass.samples));
                 let Some((index, (tile, done))) = next else {
                     break;
                 };
@@ -282,7 +282,9 @@ impl Render {
             }
         });
         if learns && let Some(knowledge) = &mut state.knowledge {
-            let gathering = gathering.into_inner().unwrap_or_else(PoisonError::into_inner);
+            let gathering = gathering
+                .into_inner()
+                .unwrap_or_else(PoisonError::into_inner);
             knowledge.give_back(gathering.into_experience());
         }
     }

@@ -70,7 +70,10 @@ pub fn what_is_computed(render: &Render) -> Vec<(String, String)> {
         add(&format!("strategy.{name}"), value);
     }
     add("sampler", settings.sampler.to_string());
-    add("guiding", if settings.guiding { "on" } else { "off" }.to_owned());
+    add(
+        "guiding",
+        if settings.guiding { "on" } else { "off" }.to_owned(),
+    );
     add("colour", settings.colour.name().into());
     add("film-sums", settings.film_sums.name().into());
     add(

@@ -36,7 +36,8 @@ impl Frame {
         let sign = 1.0_f32.copysign(z);
         let a = -1.0 / (sign + z);
         let b = x * y * a;
-        let in_turn = |x: f32, y: f32, z: f32| Vec3::new(select(z, y, x), select(x, z, y), select(y, x, z));
+        let in_turn =
+            |x: f32, y: f32, z: f32| Vec3::new(select(z, y, x), select(x, z, y), select(y, x, z));
         Self {
             tangent: in_turn(1.0 + sign * x * x * a, sign * b, -sign * x),
             bitangent: in_turn(b, sign + y * y * a, -y),

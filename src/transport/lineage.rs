@@ -86,7 +86,11 @@ impl Lineage {
         for depth in (1..self.depth).rev() {
             let (elders, youngest) = self.generations.split_at_mut(depth);
             let (elders, youngest) = (&mut elders[depth - 1], &youngest[0]);
-            let brought = youngest.births.iter().zip(&youngest.light).zip(&youngest.rays);
+            let brought = youngest
+                .births
+                .iter()
+                .zip(&youngest.light)
+                .zip(&youngest.rays);
             for ((birth, &light), &rays) in brought {
                 self.observed.segments.push(Observation {
                     address: birth.address,

@@ -73,7 +73,9 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     #[inline(always)]
     fn look(&self, lane: usize, normal: Vec3, local: Vec3, samples: &mut BsdfSamples<S>) {
         let pdf = warp::cosine_hemisphere_pdf(local.z).0;
-        samples.direction.put(lane, self.frame(normal).to_world(local));
+        samples
+            .direction
+            .put(lane, self.frame(normal).to_world(local));
         samples.weight[lane] = self.reflectance * pdf;
         samples.pdf[lane] = pdf;
     }

@@ -153,7 +153,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             if job.learns {
                 self.lineage.begin(&self.segments);
             }
-            let scatters = depth + 1 < max_depth;
             emission::arrive(
                 engine,
                 &mut self.paths,
@@ -161,7 +160,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 &mut self.vertices,
                 sampler,
                 depth,
-                scatters,
                 job.learns.then(|| self.lineage.youngest()).flatten(),
             );
             if let Some(knowledge) = job.knowledge {
@@ -175,7 +173,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                     engine,
                     &self.paths,
                     &self.vertices,
-                    depth,
                     sampler,
                     job.knowledge,
                     &mut self.shadow,
@@ -212,7 +209,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 &self.paths,
                 &self.vertices,
                 self.offspring.children(),
-                depth,
                 sampler,
                 job.knowledge,
                 &mut self.segments,

@@ -69,7 +69,12 @@ impl<C: Colour> TraceBatches for Tracer<C> {
 
 impl<C: Colour> Tracer<C> {
     /// Traces a batch as [`TraceBatches::trace`] does, and returns its rays.
-    pub fn record(&mut self, engine: &Engine, job: &TileJob<'_>, tile: &mut FilmTile) -> RecordedRays {
+    pub fn record(
+        &mut self,
+        engine: &Engine,
+        job: &TileJob<'_>,
+        tile: &mut FilmTile,
+    ) -> RecordedRays {
         self.prepare(engine);
         dispatch!(&mut self.pipeline, pipeline => {
             pipeline.recorded = Some(RecordedRays::default());
