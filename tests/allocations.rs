@@ -46,6 +46,8 @@ fn a_thread_traces_without_asking_for_memory() -> Result<(), Box<dyn Error>> {
                         },
                         first_sample: u64::from(pass) * 16,
                         samples: 16,
+                        knowledge: None,
+                        learns: false,
                     };
                     let tile = &mut film.tiles_mut()[0];
                     let trace = || tracer.trace(render.engine(), &job, tile);

@@ -61,6 +61,8 @@ pub fn record(scene: &Arc<Scene>, stretches: usize) -> Result<Vec<RaySet>, Box<d
             key,
             first_sample: 0,
             samples: SAMPLES,
+            knowledge: None,
+            learns: false,
         };
         tracer.record(render.engine(), &job, &mut film.tiles_mut()[tile])
     };

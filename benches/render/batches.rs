@@ -75,6 +75,8 @@ impl BatchSize {
                     key,
                     first_sample: u64::from(pass * samples),
                     samples,
+                    knowledge: None,
+                    learns: false,
                 };
                 self.tracer.trace(engine, &job, tile);
             }

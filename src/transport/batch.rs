@@ -70,6 +70,8 @@ pub(super) struct Receiver {
 
 /// Surface points that scatter light.
 pub(super) struct Vertices<C: Colour, V: Variant> {
+    /// How often the paths have been scattered before.
+    pub depth: u32,
     /// The camera path that each descends from; nondecreasing.
     pub path: Vec<u32>,
     /// Throughput on arrival.
@@ -222,6 +224,7 @@ impl<C: Colour> Segments<C> {
 impl<C: Colour, V: Variant> Vertices<C, V> {
     pub fn new() -> Self {
         Self {
+            depth: 0,
             path: Vec::new(),
             throughput: Vec::new(),
             point: Vec::new(),
@@ -271,8 +274,9 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
         Some(lanes)
     }
 
-    /// Empties the vertices and makes room for `count`.
-    pub fn restart(&mut self, count: usize) {
+    /// Empties the vertices and makes room for `count` of paths that have been scattered `depth` times before.
+    pub fn restart(&mut self, depth: u32, count: usize) {
+        self.depth = depth;
         make_room(&mut self.path, count);
         make_room(&mut self.throughput, count);
         make_room(&mut self.point, count);

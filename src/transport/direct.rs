@@ -21,7 +21,7 @@ const SHADOW_END: f32 = 1.0 - 1e-4;
 
 /// Draws light for every vertex and fills `shadow` with the rays that decide whether it arrives.
 ///
-/// They have been scattered `depth` times before. The emitter is chosen by what it can contribute; a path's contribution is
+/// The emitter is chosen by what it can contribute; a path's contribution is
 /// MIS-weighted against hitting the same light by chance.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
@@ -31,12 +31,11 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     engine: &Engine,
     paths: &CameraPaths<C>,
     vertices: &Vertices<C, V>,
-    depth: u32,
     sampler: &mut Sampler,
     knowledge: Option<&Knowledge>,
     shadow: &mut ShadowRays<C>,
 ) {
-    let samples = engine.settings.samples;
+    let (samples, depth) = (engine.settings.samples, vertices.depth);
     shadow.restart(vertices.len() * samples.emitters as usize);
     let mut numbers = [[0.0; CHUNK]; 3];
     let mut positions = VectorLanes::default();

@@ -20,7 +20,7 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
 /// those that met a surface which scatters light, in the order of the segments.
 ///
-/// The segments have been scattered `depth` times before; `scatters` is false at the last depth, where paths end.
+/// The segments have been scattered `depth` times before; at the last depth paths end.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -32,10 +32,11 @@ pub(super) fn arrive<C: Colour, V: Variant>(
     vertices: &mut Vertices<C, V>,
     sampler: &mut Sampler,
     depth: u32,
-    scatters: bool,
     mut generation: Option<&mut Generation>,
 ) {
-    vertices.restart(segments.len());
+    vertices.restart(depth, segments.len());
+    let max_depth = engine.settings.max_depth;
+    let scatters = max_depth.is_none_or(|max_depth| depth + 1 < max_depth);
     let hides_surroundings = depth == 0 && engine.settings.hide_emitters;
     let has_instances = V::INSTANCES && !engine.scene.instances.is_empty();
     if has_instances {

@@ -161,7 +161,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             if job.learns {
                 self.lineage.begin(&self.segments);
             }
-            let scatters = depth + 1 < max_depth;
             emission::arrive(
                 engine,
                 &mut self.paths,
@@ -169,7 +168,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 &mut self.vertices,
                 sampler,
                 depth,
-                scatters,
                 job.learns.then(|| self.lineage.youngest()).flatten(),
             );
             if let Some(knowledge) = job.knowledge {
@@ -183,7 +181,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                     engine,
                     &self.paths,
                     &self.vertices,
-                    depth,
                     sampler,
                     guide,
                     &mut self.shadow,
@@ -228,7 +225,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 &self.paths,
                 &self.vertices,
                 self.offspring.children(),
-                depth,
                 sampler,
                 guide,
                 &mut self.segments,

@@ -41,6 +41,8 @@ mod tests {
             key,
             first_sample: 0,
             samples: 4,
+            knowledge: None,
+            learns: false,
         };
         let mut tracer = Tracer::<Rgb>::default();
 

@@ -15,8 +15,7 @@ use crate::scene::BsdfSamples;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 use crate::walk::Child;
 
-/// Starts one segment for every child that can carry light; siblings side by side. Their parents have been scattered
-/// `depth` times before.
+/// Starts one segment for every child that can carry light; siblings side by side.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -26,11 +25,11 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     paths: &CameraPaths<C>,
     vertices: &Vertices<C, V>,
     children: &[Child],
-    depth: u32,
     sampler: &mut Sampler,
     knowledge: Option<&Knowledge>,
     segments: &mut Segments<C>,
 ) {
+    let depth = vertices.depth;
     segments.restart(children.len());
     let light_is_chosen = engine.light_choice.depends_on_surface();
     if light_is_chosen {
