@@ -184,7 +184,7 @@ impl Effort {
 }
 
 /// Every strategy. Those that split the first vertex need fewer samples for the same noise.
-fn every_strategy() -> [Walk; 6] {
+fn every_strategy() -> [Walk; StrategyKind::ALL.len()] {
     StrategyKind::ALL.map(|kind| match kind {
         // The light of paths with more than 48 segments is below 1e-6 of the whole: at each reflection a quarter of the
         // light is lost, and some leaves through the open front.
@@ -192,7 +192,10 @@ fn every_strategy() -> [Walk; 6] {
             max_depth: Some(48),
             ..Walk::new(kind, 10)
         },
-        StrategyKind::Roulette | StrategyKind::ThroughputRoulette => Walk::new(kind, 10),
+        StrategyKind::Roulette
+        | StrategyKind::ThroughputRoulette
+        | StrategyKind::AdjointRoulette
+        | StrategyKind::Ears => Walk::new(kind, 10),
         // It ends paths from the first vertex on: cheap paths, and more of them.
         StrategyKind::ParticleFilter => Walk::new(kind, 20),
         StrategyKind::GoWithTheWinners | StrategyKind::PaperParticleFilter => Walk::new(kind, 9),

@@ -1,8 +1,8 @@
 //! What is measured: every strategy with every way to draw.
 
 use cohort::walk::{
-    GoWithTheWinners, ParticleFilter, Rounding, Scope, SettingError, Strategy, StrategyKind,
-    StrategyOptions,
+    CountRule, GoWithTheWinners, ParticleFilter, Rounding, Scope, SettingError, Strategy,
+    StrategyKind, StrategyOptions,
 };
 
 /// A strategy, and the particles that it makes for itself.
@@ -25,7 +25,9 @@ impl Case {
             StrategyKind::GoWithTheWinners => GoWithTheWinners::DEFAULT_N_MAX,
             StrategyKind::FixedDepth
             | StrategyKind::Roulette
-            | StrategyKind::ThroughputRoulette => 1.0,
+            | StrategyKind::ThroughputRoulette
+            | StrategyKind::AdjointRoulette
+            | StrategyKind::Ears => 1.0,
         };
         Ok(Self {
             kind,
@@ -38,6 +40,7 @@ impl Case {
     pub fn all() -> Result<Vec<Self>, SettingError> {
         let mut cases = Vec::new();
         for kind in StrategyKind::ALL {
+            // Without knowledge, those that learn decide as before their first lesson.
             if kind != StrategyKind::ParticleFilter {
                 cases.push(Self::new(kind, &StrategyOptions::default())?);
                 continue;
@@ -45,6 +48,7 @@ impl Case {
             for population in Scope::JOINT {
                 for counts in Rounding::ALL {
                     let options = StrategyOptions {
+                        rule: Some(CountRule::Importance),
                         population: Some(population),
                         counts: Some(counts),
                         ..StrategyOptions::default()

@@ -49,6 +49,7 @@ impl Particles {
             group: &self.group,
             depth: DEPTH,
             points: None,
+            learned: None,
         }
     }
 }

@@ -26,7 +26,7 @@ pub struct StrategyArgs {
     #[arg(long, value_name = "N")]
     from_depth: Option<u32>,
 
-    /// particle-filter: by what children are counted: learned or importance [default: learned]
+    /// particle-filter: by what children are counted: learned or importance [default: learned, or importance where --n-max is given]
     #[arg(long, value_name = "NAME")]
     rule: Option<CountRule>,
 

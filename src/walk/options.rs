@@ -168,7 +168,11 @@ fn particle_filter(options: &StrategyOptions) -> Result<ParticleFilter, SettingE
         .population
         .unwrap_or(ParticleFilter::DEFAULT_POPULATION);
     let counts = options.counts.unwrap_or(ParticleFilter::DEFAULT_COUNTS);
-    let rule = options.rule.unwrap_or_default();
+    // A number of particles asks for the rule that has one.
+    let rule = options.rule.unwrap_or(match options.n_max {
+        Some(_) => CountRule::Importance,
+        None => CountRule::Learned,
+    });
     let foreign = match rule {
         CountRule::Learned => options.n_max.map(|_| ("n-max", "rule=importance")),
         CountRule::Importance => options.objective.map(|_| ("objective", "rule=learned")),
@@ -230,7 +234,7 @@ mod tests {
         assert_eq!(
             "rullette".parse::<StrategyKind>().unwrap_err().to_string(),
             "there is no strategy `rullette`; choose one of fixed-depth, roulette, throughput-roulette, \
-             go-with-the-winners, particle-filter, paper-particle-filter"
+             go-with-the-winners, adjoint-roulette, ears, particle-filter, paper-particle-filter"
         );
         assert!("particle".parse::<Scope>().is_err());
     }
@@ -266,14 +270,13 @@ mod tests {
             ("go-with-the-winners", "n-max 10".to_owned())
         );
         for (population, expected) in [
-            (None, "n-max 1, population pixel, counts systematic"),
             (
-                Some(Scope::Tile),
-                "n-max 1, population tile, counts systematic",
+                None,
+                "rule learned, objective relative, population pixel, counts systematic",
             ),
             (
-                Some(Scope::CameraPath),
-                "n-max 10, population camera-path, counts systematic",
+                Some(Scope::Tile),
+                "rule learned, objective relative, population tile, counts systematic",
             ),
         ] {
             assert_eq!(
@@ -282,10 +285,27 @@ mod tests {
             );
         }
         assert_eq!(
+            settings(StrategyKind::Ears, None),
+            ("ears", "objective relative".to_owned())
+        );
+        for (population, n_max) in [(Scope::CameraPath, "10"), (Scope::Pixel, "1")] {
+            let options = StrategyOptions {
+                rule: Some(CountRule::Importance),
+                population: Some(population),
+                ..Default::default()
+            };
+            let settings = StrategyKind::ParticleFilter
+                .build(&options)
+                .unwrap()
+                .settings();
+            assert_eq!(settings[0], ("rule", "importance".to_owned()));
+            assert_eq!(settings[1], ("n-max", n_max.to_owned()));
+        }
+        assert_eq!(
             settings(StrategyKind::PaperParticleFilter, None),
             (
                 "particle-filter",
-                "n-max 10, population camera-path, counts multinomial".to_owned()
+                "rule importance, n-max 10, population camera-path, counts multinomial".to_owned()
             )
         );
     }
@@ -327,19 +347,18 @@ mod tests {
         ];
         let values = all.map(|(kind, options)| {
             let settings = kind.build(&options).unwrap().settings();
-            assert!(
-                settings
-                    .iter()
-                    .map(|(name, _)| *name)
-                    .eq(kind.settings().iter().copied())
-            );
+            let known = |(name, _): &(&str, String)| kind.settings().contains(name);
+            assert!(settings.iter().all(known), "{settings:?}");
             settings
                 .into_iter()
                 .map(|(_, value)| value)
                 .collect::<Vec<_>>()
                 .join(" ")
         });
-        assert_eq!(values, ["0.25 0.75", "9", "3.5", "2.5 tile stratified"]);
+        assert_eq!(
+            values,
+            ["0.25 0.75", "9", "3.5", "importance 2.5 tile stratified"]
+        );
     }
 
     #[test]
@@ -359,7 +378,31 @@ mod tests {
         assert_eq!(
             refusal(StrategyKind::PaperParticleFilter, n_max),
             "the strategy `paper-particle-filter` has no setting `n-max`; it is `particle-filter` with the \
-             paper's settings, and that one has n-max, population, counts"
+             paper's settings, and that one has rule, objective, n-max, population, counts"
+        );
+    }
+
+    #[test]
+    fn settings_of_the_other_rule_are_refused() {
+        let learned = StrategyOptions {
+            rule: Some(CountRule::Learned),
+            n_max: Some(2.0),
+            ..Default::default()
+        };
+        let importance = StrategyOptions {
+            rule: Some(CountRule::Importance),
+            objective: Some(Objective::Mse),
+            ..Default::default()
+        };
+        let message = refusal(StrategyKind::ParticleFilter, learned);
+        assert!(
+            message.contains("`n-max`; that belongs to rule=importance"),
+            "{message}"
+        );
+        let message = refusal(StrategyKind::ParticleFilter, importance);
+        assert!(
+            message.contains("`objective`; that belongs to rule=learned"),
+            "{message}"
         );
     }
 

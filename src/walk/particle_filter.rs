@@ -24,7 +24,7 @@
 //! all populations have the same scalar importance W a / nu = 1 / n_max.
 //!
 //! **Settings**
-//! - `rule`: `learned` (default) or `importance`.
+//! - `rule`: `learned` (default) or `importance` (default where `n-max` is given).
 //! - `objective`, of the learned rule: `relative` (default), the error relative to each pixel's brightness, or `mse`, where I is 1 everywhere.
 //! - `population`, whose particles are resampled together: `camera-path` (the offspring of one camera path, as the paper
 //!   has it), `pixel` (default) or `tile`. W is relative to each particle's own camera path in any case.
