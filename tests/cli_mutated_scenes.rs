@@ -1,8 +1,12 @@
 //! Scenes altered at random: each is refused or rendered, and nothing panics.
 
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::sync::Arc;
+use std::time::Duration;
 
-use cohort::{Budget, LoadOptions, Render, Scene, Settings, StopFlag};
+use cohort::sampling::SamplerKind;
+use cohort::{Budget, LoadOptions, Render, Scene, Settings, StopFlag, Strategy as Walk};
+use cohort::{StrategyKind, StrategyOptions};
 use proptest::prelude::*;
 
 /// Most of what a scene file can say, small.
@@ -128,7 +132,7 @@ fn mutation() -> impl Strategy<Value = Mutation> {
     ]
 }
 
-/// Renders `text` if it is a scene, and says whether it was.
+/// Renders `text` if it is a scene, and says whether it was: once plainly, and once learning from its passes.
 fn try_render(text: &str) -> bool {
     let Ok(scene) = Scene::from_xml(text, &LoadOptions::default()) else {
         return false;
@@ -137,30 +141,84 @@ fn try_render(text: &str) -> bool {
     if scene.film.crop.size.pixels() > 4096 {
         return false;
     }
-    let settings = Settings {
-        budget: Budget::SamplesPerPixel(std::num::NonZeroU32::MIN),
-        threads: std::num::NonZeroUsize::MIN,
-        max_depth: std::num::NonZeroU32::new(4),
+    let scene = Arc::new(scene);
+    let plain = Settings::default();
+    let learning = Settings {
+        strategy: particle_filter(),
+        sampler: SamplerKind::ArrayQmc,
+        guiding: true,
         ..Settings::default()
     };
-    let Ok(render) = Render::new(Arc::new(scene), settings) else {
+    // Passes of 1, 1 and 2 samples, which learn from each other.
+    render(&scene, plain, 1) && render(&scene, learning, 4)
+}
+
+fn particle_filter() -> Box<dyn Walk> {
+    let strategy = StrategyKind::ParticleFilter.build(&StrategyOptions::default());
+    strategy.expect("defaults are valid")
+}
+
+/// Renders `scene` if its settings are valid, and says whether they were.
+fn render(scene: &Arc<Scene>, settings: Settings, spp: u32) -> bool {
+    let settings = Settings {
+        budget: Budget::Time(Duration::MAX),
+        threads: NonZeroUsize::MIN,
+        max_depth: NonZeroU32::new(4),
+        ..settings
+    };
+    let Ok(render) = Render::new(Arc::clone(scene), settings) else {
         return false;
     };
-    let image = render.run(&StopFlag::new(), &()).film.image();
-    assert!(
-        image
-            .pixels()
-            .iter()
-            .flatten()
-            .all(|value| value.is_finite()),
-        "{text}"
-    );
+    let until = Budget::SamplesPerPixel(NonZeroU32::new(spp).expect("there are samples"));
+    let mut state = render.start(0);
+    render.advance(&mut state, until, &StopFlag::new(), &());
+    let image = state.film().image();
+    let mut values = image.pixels().iter().flatten();
+    assert!(values.all(|value| value.is_finite()), "{}", scene.name);
     true
 }
 
 #[test]
 fn the_scene_itself_is_right() {
     assert!(try_render(SCENE));
+}
+
+/// What there is to learn of may be nothing, a point, larger than numbers can say, or brighter.
+#[test]
+fn extreme_scenes_are_rendered() {
+    let film = r#"<film type="hdrfilm"><integer name="width" value="4"/><integer name="height" value="4"/></film>"#;
+    let look = r#"<transform name="to_world"><lookat origin="0, 0, 6" target="0, 0, 0" up="0, 1, 0"/></transform>"#;
+    let ball = |radius: f32, more: &str| {
+        format!(r#"<shape type="sphere"><float name="radius" value="{radius:e}"/>{more}</shape>"#)
+    };
+    let sky = |radiance: &str| {
+        format!(r#"<emitter type="constant"><rgb name="radiance" value="{radiance}"/></emitter>"#)
+    };
+    let lamp = |radiance: &str| {
+        format!(r#"<emitter type="area"><rgb name="radiance" value="{radiance}"/></emitter>"#)
+    };
+    let scenes = [
+        String::new(),
+        sky("1"),
+        ball(1.0, ""),
+        ball(1e-30, "") + &sky("1"),
+        ball(1e18, "") + &ball(1.0, "") + &sky("1"),
+        ball(1e30, &lamp("1")) + &ball(1.0, ""),
+        ball(1.0, "") + &sky("3e38"),
+        ball(1.0, "") + &sky("1e-38"),
+        ball(1.0, &lamp("3e38")) + &ball(9.0, r#"<boolean name="flip_normals" value="true"/>"#),
+        ball(1.0, &lamp("1e30")) + &ball(9.0, r#"<boolean name="flip_normals" value="true"/>"#),
+    ];
+    for content in scenes {
+        let text = format!(
+            r#"<scene version="3.0.0"><sensor type="perspective"><float name="fov" value="40"/>{look}{film}</sensor>{content}</scene>"#
+        );
+        if let Err(error) = Scene::from_xml(&text, &LoadOptions::default()) {
+            println!("{content}: {error}");
+        } else {
+            assert!(try_render(&text), "{content}");
+        }
+    }
 }
 
 proptest! {

@@ -4,9 +4,11 @@ mod support;
 
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::sync::Arc;
+use std::time::Duration;
 
 use cohort::film::Film;
 use cohort::render::{Budget, ColourMode, Render, Settings, StopFlag};
+use cohort::sampling::SamplerKind;
 use cohort::scene::{LoadOptions, Scene};
 use cohort::walk::{ParticleFilter, Rounding, Scope, Strategy, StrategyKind, StrategyOptions};
 
@@ -108,6 +110,44 @@ fn the_number_of_threads_changes_no_bit_of_instances() {
         assert!(one.image().mean()[1] > 0.01, "{kind}: the image is black");
         for threads in [2, 3] {
             assert!(with(threads) == one, "{kind}: {threads} threads");
+        }
+    }
+}
+
+/// What is learned does not depend on which tile is ready first.
+#[test]
+fn the_number_of_threads_changes_no_bit_of_what_is_learned() {
+    let scene = scene();
+    for sampler in SamplerKind::ALL {
+        for kind in [StrategyKind::Roulette, StrategyKind::ParticleFilter] {
+            let with = |threads, guiding| {
+                let strategy = kind.build(&StrategyOptions::default());
+                let strategy = strategy.expect("defaults are valid");
+                let settings = Settings {
+                    sampler,
+                    guiding,
+                    // Lessons after 1, 2, 4, 8, 16 and 32 samples.
+                    budget: Budget::Time(Duration::MAX),
+                    ..settings(strategy, ColourMode::Rgb, threads, 7)
+                };
+                let until = Budget::SamplesPerPixel(NonZeroU32::new(40).expect("not zero"));
+                let render = Render::new(Arc::clone(&scene), settings);
+                let render = render.expect("the scene can be rendered");
+                let mut state = render.start(7);
+                render.advance(&mut state, until, &StopFlag::new(), &());
+                state.film().clone()
+            };
+            let one = with(1, true);
+            assert!(
+                one != with(1, false),
+                "{kind}, {sampler}: nothing is guided"
+            );
+            for threads in [1, 2, 3] {
+                assert!(
+                    with(threads, true) == one,
+                    "{kind}, {sampler}: {threads} threads"
+                );
+            }
         }
     }
 }

@@ -7,19 +7,27 @@ use std::time::Duration;
 
 use cohort::film::Film;
 use cohort::render::{Budget, Ended, Render, RenderState, Settings, StopFlag};
+use cohort::sampling::SamplerKind;
 use cohort::walk::{StrategyKind, StrategyOptions};
 
 use support::render::many_emitters;
 
-fn render(strategy: StrategyKind, budget: Budget, threads: usize) -> Render {
-    let settings = Settings {
+fn settings(strategy: StrategyKind, budget: Budget, threads: usize) -> Settings {
+    Settings {
         strategy: strategy
             .build(&StrategyOptions::default())
             .expect("defaults are valid"),
         budget,
         threads: NonZeroUsize::new(threads).expect("there is a thread"),
         ..Settings::default()
-    };
+    }
+}
+
+fn render(strategy: StrategyKind, budget: Budget, threads: usize) -> Render {
+    prepared(settings(strategy, budget, threads))
+}
+
+fn prepared(settings: Settings) -> Render {
     Render::new(many_emitters(40), settings).expect("the scene can be rendered")
 }
 
@@ -65,10 +73,25 @@ fn check_pixels(film: &Film, at_once: &[Film], what: &str) {
     }
 }
 
+/// What is rendered: independent samples, and whatever passes leave to the passes after them.
+fn cases(budget: Budget, threads: usize) -> [(&'static str, Render); 3] {
+    let alone = settings(StrategyKind::Roulette, budget, threads);
+    let together = || settings(StrategyKind::ParticleFilter, budget, threads);
+    let learning = Settings {
+        sampler: SamplerKind::ArrayQmc,
+        guiding: true,
+        ..together()
+    };
+    [
+        ("roulette", prepared(alone)),
+        ("a population", prepared(together())),
+        ("a guided population that is sorted", prepared(learning)),
+    ]
+}
+
 /// Two renders take turns in slices, slice k `until` the budget of k, and each is compared with itself in one go.
 fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) {
-    for strategy in [StrategyKind::Roulette, StrategyKind::ParticleFilter] {
-        let alone = render(strategy, budget, 1);
+    for (case, (name, alone)) in cases(budget, 1).into_iter().enumerate() {
         let at_once = |seed| {
             let film = |samples| {
                 let mut state = alone.start(seed);
@@ -83,8 +106,8 @@ fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) {
             [1, 2, 4, 8, 16, 32].map(film)
         };
         for threads in [1, 2] {
-            let what = format!("{} on {threads} threads", strategy.name());
-            let render = render(strategy, budget, threads);
+            let what = format!("{name} on {threads} threads");
+            let (_, render) = &cases(budget, threads)[case];
             let mut states = [3, 4].map(|seed| render.start(seed));
             let at_once = [3, 4].map(at_once);
             let mut within_a_pass = false;
@@ -96,7 +119,7 @@ fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) {
                 let taking_turns = states.iter_mut().zip(&at_once);
                 for (state, at_once) in taking_turns.filter(|(state, _)| is_short(state)) {
                     *state = saved_and_loaded(state);
-                    let ended = advance(&render, state, until(slice));
+                    let ended = advance(render, state, until(slice));
                     assert!(matches!(ended, Ended::OutOfTime | Ended::OutOfRays));
                     check_pixels(state.film(), at_once, &what);
                     within_a_pass |= state.film().unequal_samples().is_some();
@@ -104,11 +127,11 @@ fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) {
             }
             assert!(within_a_pass, "{what}: no slice ended within a pass");
             for (state, at_once) in states.iter_mut().zip(&at_once) {
-                assert_eq!(advance(&render, state, spp(32)), Ended::Complete);
+                assert_eq!(advance(render, state, spp(32)), Ended::Complete);
                 assert!(state.film() == &at_once[5], "{what}: 32 samples");
                 assert_eq!(state.statistics().camera_paths, 40 * 40 * 32);
                 let before = state.clone();
-                assert_eq!(advance(&render, state, spp(20)), Ended::Complete);
+                assert_eq!(advance(render, state, spp(20)), Ended::Complete);
                 assert!(state.film() == before.film(), "{what}: it went on");
             }
         }

@@ -10,13 +10,23 @@ use cohort::sampling::SamplerKind;
 use cohort::scene::{LoadOptions, Scene};
 use cohort::walk::{StrategyKind, StrategyOptions};
 
-use support::render::replicates_with_rare_highlights;
+use support::render::{replicates_in_growing_passes, replicates_with_rare_highlights};
 
 /// The integral of the CIE's table of luminous efficiency over what Mitsuba, and so the film, divides it by.
 const LUMINANCE_OF_EQUAL_ENERGY: f64 = 106.856_895 / 106.750_259;
 
 /// Surfaces that absorb nothing, and how many samples a pixel needs to see nothing of them.
-const SURFACES: [(&str, &str, u32); 8] = [
+const SURFACES: [(&str, &str, u32); 10] = [
+    (
+        "diffuse",
+        r#"<bsdf type="diffuse"><float name="reflectance" value="1"/></bsdf>"#,
+        16,
+    ),
+    (
+        "plastic",
+        r#"<bsdf type="plastic"><float name="diffuse_reflectance" value="1"/></bsdf>"#,
+        16,
+    ),
     ("dielectric", r#"<bsdf type="dielectric"/>"#, 32),
     (
         "dispersive dielectric",
@@ -61,49 +71,63 @@ fn scene(bsdf: &str) -> Arc<Scene> {
     Arc::new(Scene::from_xml(&text, &LoadOptions::default()).expect("the scene can be loaded"))
 }
 
+const SPECTRAL: ColourMode = ColourMode::Spectral(WavelengthCount::Four);
+
+const MORE_WAVELENGTHS: ColourMode = ColourMode::Spectral(WavelengthCount::Eight);
+
+/// Renders every surface, whose image must be that of the light around it.
+fn look(kind: StrategyKind, colour: ColourMode, sampler: SamplerKind, guiding: bool) {
+    for (name, bsdf, spp) in SURFACES {
+        let strategy = kind.build(&StrategyOptions::default());
+        let settings = Settings {
+            strategy: strategy.expect("the defaults are good"),
+            colour,
+            sampler,
+            guiding,
+            // Hardly anything is left after so many reflections inside of the ball.
+            max_depth: NonZeroU32::new(64),
+            ..Settings::default()
+        };
+        let render = if guiding {
+            replicates_in_growing_passes
+        } else {
+            replicates_with_rare_highlights
+        };
+        let images = render(&scene(bsdf), settings, 0..16, spp);
+        let [.., estimate] = images.means();
+        let expected = match colour {
+            ColourMode::Rgb => 1.0,
+            ColourMode::Spectral(_) => LUMINANCE_OF_EQUAL_ENERGY,
+        };
+        let error = estimate.standard_error() / expected;
+        let deviation = estimate.mean / expected - 1.0;
+        let what = format!(
+            "{name}, {kind}, {}, {sampler}, guiding {guiding}: {:+.4} % (+-{:.4} %)",
+            colour.name(),
+            100.0 * deviation,
+            100.0 * error
+        );
+        println!("{what}");
+        assert!(error <= 0.02, "{what}: too noisy to say anything");
+        assert!(deviation.abs() <= 4.5 * error + 2e-4, "{what}");
+    }
+}
+
 #[test]
 fn what_absorbs_nothing_is_not_seen() {
-    for (name, bsdf, spp) in SURFACES {
-        let scene = scene(bsdf);
-        for kind in StrategyKind::ALL {
-            for (colour, sampler) in [
-                (ColourMode::Rgb, SamplerKind::Independent),
-                (
-                    ColourMode::Spectral(WavelengthCount::Four),
-                    SamplerKind::Independent,
-                ),
-                (
-                    ColourMode::Spectral(WavelengthCount::Eight),
-                    SamplerKind::Sobol,
-                ),
-            ] {
-                let strategy = kind.build(&StrategyOptions::default());
-                let settings = Settings {
-                    strategy: strategy.expect("the defaults are good"),
-                    colour,
-                    sampler,
-                    // Hardly anything is left after so many reflections inside of the ball.
-                    max_depth: NonZeroU32::new(64),
-                    ..Settings::default()
-                };
-                let images = replicates_with_rare_highlights(&scene, settings, 0..16, spp);
-                let [.., estimate] = images.means();
-                let expected = match colour {
-                    ColourMode::Rgb => 1.0,
-                    ColourMode::Spectral(_) => LUMINANCE_OF_EQUAL_ENERGY,
-                };
-                let error = estimate.standard_error() / expected;
-                let deviation = estimate.mean / expected - 1.0;
-                let what = format!(
-                    "{name}, {kind}, {}, {sampler}: {:+.4} % (+-{:.4} %)",
-                    colour.name(),
-                    100.0 * deviation,
-                    100.0 * error
-                );
-                println!("{what}");
-                assert!(error <= 0.02, "{what}: too noisy to say anything");
-                assert!(deviation.abs() <= 4.5 * error + 2e-4, "{what}");
-            }
-        }
+    for kind in StrategyKind::ALL {
+        look(kind, ColourMode::Rgb, SamplerKind::Independent, false);
+        look(kind, SPECTRAL, SamplerKind::Independent, false);
+        look(kind, MORE_WAVELENGTHS, SamplerKind::Sobol, false);
     }
+}
+
+/// Directions of smooth lobes are guided, those of discrete ones are left alone, also where a surface has both.
+#[test]
+fn nor_is_it_where_directions_are_guided() {
+    let (roulette, filter) = (StrategyKind::Roulette, StrategyKind::ParticleFilter);
+    look(roulette, ColourMode::Rgb, SamplerKind::Independent, true);
+    look(roulette, SPECTRAL, SamplerKind::ArrayQmc, true);
+    look(filter, MORE_WAVELENGTHS, SamplerKind::Sobol, true);
+    look(filter, ColourMode::Rgb, SamplerKind::ArrayQmc, true);
 }

@@ -260,3 +260,159 @@ impl Experience {
         (places, insights)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    fn tree() -> CellTree {
+        CellTree::new([Vec3::ZERO, Vec3::ONE], 3)
+    }
+
+    /// Of what faces +z.
+    fn address(tree: &CellTree, position: f32) -> u32 {
+        tree.cell(Vec3::splat(position)) * FRAME_CLASSES as u32 + 4
+    }
+
+    fn observation(address: u32, value: f32) -> Observation {
+        Observation {
+            address,
+            bin: Some(Bin::of([0.5, 0.9])),
+            radiance: 2.0 * value,
+            value,
+            cost: 3.0 * value,
+        }
+    }
+
+    fn observed(observations: impl IntoIterator<Item = Observation>) -> Experience {
+        let mut experience = Experience::default();
+        for observation in observations {
+            experience.observe(&observation);
+        }
+        experience
+    }
+
+    /// All sums of a list added up.
+    fn total(experience: &Experience) -> Sums {
+        let mut total = Sums::default();
+        for sums in &experience.sums {
+            total.add(sums, 1.0);
+        }
+        total
+    }
+
+    #[test]
+    fn insights_stand_where_something_was_observed() {
+        let tree = tree();
+        let (here, there) = (address(&tree, 0.1), address(&tree, 0.9));
+        let mut experience = observed([observation(there, 5.0), observation(here, 1.0)]);
+        experience.refine(&mut tree.clone());
+        let (places, insights) = experience.insights(&tree);
+        assert_eq!(places.len(), tree.cells() as usize * FRAME_CLASSES);
+        assert_eq!(places.iter().filter(|&&place| place > 0).count(), 2);
+        assert_eq!(insights.len(), 2);
+        for (address, value) in [(here, 1.0), (there, 5.0)] {
+            let insight = &insights[places[address as usize] as usize - 1];
+            // Of the only cell of a family, nothing is filled up with something else.
+            assert_eq!(insight.mean, value);
+            assert_eq!(insight.square, value * value);
+            assert_eq!(insight.cost, 3.0 * value);
+        }
+    }
+
+    /// Where little was observed, the rest is what was observed around: cells of one eighth of each axis, families of a half.
+    #[test]
+    fn few_observations_are_filled_up_by_those_of_the_family() {
+        let tree = tree();
+        let [few, many, apart] = [0.1, 0.3, 0.9].map(|position| address(&tree, position));
+        let of_many = (0..96).map(|_| observation(many, 1.0));
+        let of_others = [observation(few, 8.0), observation(apart, 1e6)];
+        let mut experience = observed(of_many.chain(of_others));
+        experience.refine(&mut tree.clone());
+        let (places, insights) = experience.insights(&tree);
+        let mean = |address: u32| insights[places[address as usize] as usize - 1].mean;
+        let family = (96.0 + 8.0) / 97.0;
+        assert!((mean(few) - (8.0 + OF_FAMILY * family) / (1.0 + OF_FAMILY)).abs() < 1e-5);
+        assert!((mean(many) - (96.0 + OF_FAMILY * family) / (96.0 + OF_FAMILY)).abs() < 1e-5);
+        assert_eq!(mean(apart), 1e6);
+    }
+
+    #[test]
+    fn light_is_expected_from_where_it_came() {
+        let tree = tree();
+        let address = address(&tree, 0.1);
+        let from = |u, v, radiance| Observation {
+            bin: Some(Bin::of([u, v])),
+            radiance,
+            ..observation(address, 1.0)
+        };
+        let everywhere = (0..640).map(|i| {
+            let [u, v] = [i % 8, i / 8 % 8].map(|k| (k as f32 + 0.5) / 8.0);
+            from(u, v, if i % 64 == 19 { 64.0 } else { 0.0 })
+        });
+        let mut experience = observed(everywhere);
+        experience.refine(&mut tree.clone());
+        let (_, insights) = experience.insights(&tree);
+        // u is in bin 19 % 8, v in 19 / 8.
+        let bright = insights[0].warp.density(Bin::of([3.5 / 8.0, 2.5 / 8.0]));
+        let dark = insights[0].warp.density(Bin::of([2.5 / 8.0, 3.5 / 8.0]));
+        assert!(bright > 30.0 && dark < 0.5, "{bright} {dark}");
+    }
+
+    #[test]
+    fn halving_keeps_the_sums() {
+        let mut tree = tree();
+        let (full, other) = (address(&tree, 0.1), address(&tree, 0.9));
+        let count = 4 * MOST_PER_CELL as u32;
+        let of_full = (0..count).map(|_| observation(full, 0.5));
+        let mut experience = observed(of_full.chain([observation(other, 3.0)]));
+        let before = total(&experience);
+        experience.refine(&mut tree);
+        // Twice: the cell's four parts have as much as a cell may have.
+        assert_eq!(tree.cells(), 512 + 3);
+        assert_eq!(
+            experience.places.len(),
+            tree.cells() as usize * FRAME_CLASSES
+        );
+        assert_eq!(total(&experience), before);
+        let count_at = |position| {
+            let place = experience.places[address(&tree, position) as usize];
+            experience.sums[place as usize - 1].count
+        };
+        assert_eq!(f64::from(count_at(0.1)), MOST_PER_CELL);
+        assert_eq!(f64::from(count_at(0.01)), MOST_PER_CELL);
+        assert_eq!(count_at(0.9), 1.0);
+        let (places, insights) = experience.insights(&tree);
+        assert_eq!(places.iter().filter(|&&place| place > 0).count(), 5);
+        assert!(insights[..1].iter().all(|insight| insight.mean == 0.5));
+    }
+
+    #[test]
+    fn what_is_not_finite_is_not_observed() {
+        let nothing = Experience::default();
+        for value in [f32::NAN, f32::INFINITY, -1.0, 1e30] {
+            assert_eq!(observed([observation(7, value)]), nothing, "{value}");
+        }
+        let mut experience = Experience::default();
+        let pixel = PixelObservation {
+            pixel: 2,
+            paths: 1,
+            radiance: 1.0,
+            square: 1.0,
+            rays: 5.0,
+        };
+        let squares = [1.0, f32::NAN, f32::INFINITY, 4.0];
+        experience.add(&Observations {
+            segments: Vec::new(),
+            pixels: squares
+                .map(|square| PixelObservation { square, ..pixel })
+                .into(),
+        });
+        let [.., last] = experience.pixels() else {
+            panic!("pixels are observed");
+        };
+        assert_eq!(experience.pixels().len(), 3);
+        assert_eq!((last.paths, last.square, last.rays), (2, 5.0, 10.0));
+    }
+}

@@ -100,3 +100,82 @@ impl Knowledge {
         &self.pixels
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learning::{Gathering, Observation, Observations};
+
+    const FILM: ImageSize = ImageSize {
+        width: 1,
+        height: 1,
+    };
+
+    fn teach(knowledge: &mut Knowledge, segments: Vec<Observation>) {
+        let mut gathering = Gathering::new(knowledge.take_experience(), 0);
+        let pixels = Vec::new();
+        gathering.add(0, Observations { segments, pixels });
+        knowledge.give_back(gathering.into_experience());
+        knowledge.learn();
+    }
+
+    fn observation(address: u32, value: f32) -> Observation {
+        Observation {
+            address,
+            bin: None,
+            radiance: value,
+            value,
+            cost: 1.0,
+        }
+    }
+
+    #[test]
+    fn what_was_observed_at_a_surface_is_known_there_alone() {
+        let mut knowledge = Knowledge::nothing([Vec3::ZERO, Vec3::ONE], FILM);
+        let place = Vec3::new(0.1, 0.2, 0.3);
+        let address = knowledge.address(place, Vec3::X);
+        assert!(knowledge.insight(address).is_none());
+        teach(&mut knowledge, vec![observation(address, 5.0)]);
+        let mean = |place, normal| {
+            let insight = knowledge.insight(knowledge.address(place, normal));
+            insight.map(|insight| insight.mean)
+        };
+        assert_eq!(mean(place, Vec3::X), Some(5.0));
+        assert_eq!(mean(place + 0.02, Vec3::new(0.8, 0.6, 0.0)), Some(5.0));
+        assert_eq!(mean(place, Vec3::NEG_X), None);
+        assert_eq!(mean(place + 0.5, Vec3::X), None);
+        assert_eq!(knowledge.lessons(), 1);
+    }
+
+    /// Addresses change when cells are halved; what was known of a place stays known.
+    #[test]
+    fn halves_know_what_the_whole_knew() {
+        let mut knowledge = Knowledge::nothing([Vec3::ZERO, Vec3::ONE], FILM);
+        let places = [0.06, 0.3, 0.9].map(Vec3::splat);
+        for lesson in 1..4 {
+            let [many, some, few] = places.map(|place| knowledge.address(place, Vec3::Y));
+            let of_many = vec![observation(many, 10.0); 40_000];
+            let of_some = vec![observation(some, 20.0); 200];
+            let of_few = vec![observation(few, 30.0); 2];
+            teach(&mut knowledge, [of_many, of_some, of_few].concat());
+            let of = |place| {
+                knowledge
+                    .insight(knowledge.address(place, Vec3::Y))
+                    .unwrap()
+            };
+            let means = places.map(|place| of(place).mean);
+            assert!(means[0] < 10.1 && means[0] > 9.9, "{lesson}: {means:?}");
+            // At first it is of the family of the many.
+            assert!(means[1] > 19.0 && means[1] < 20.1, "{lesson}: {means:?}");
+            assert!((means[2] - 30.0).abs() < 1e-3, "{lesson}: {means:?}");
+        }
+        assert!(knowledge.tree.cells() > 512);
+        let before = knowledge.clone();
+        knowledge.conclude();
+        assert_ne!(knowledge, before);
+        for place in places {
+            let address = knowledge.address(place, Vec3::Y);
+            assert_eq!(knowledge.insight(address), before.insight(address));
+        }
+    }
+}

@@ -118,3 +118,75 @@ impl Sum {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: ImageSize = ImageSize {
+        width: 7,
+        height: 6,
+    };
+
+    fn observed(radiance: impl Fn(u32, u32) -> f32) -> Vec<PixelObservation> {
+        let pixel = |index: u32| {
+            let radiance = radiance(index % SIZE.width, index / SIZE.width);
+            PixelObservation {
+                pixel: index,
+                paths: 2,
+                // One path brought it all.
+                radiance,
+                square: radiance * radiance,
+                rays: 10.0,
+            }
+        };
+        (0..SIZE.width * SIZE.height).map(pixel).collect()
+    }
+
+    #[test]
+    fn brightness_is_the_mean_of_the_neighbours() {
+        let radiance = |x: u32, y: u32| (1 + x * x + 10 * y) as f32;
+        let knowledge = PixelKnowledge::new(&observed(radiance), SIZE);
+        for (x, y) in (0..SIZE.width).flat_map(|x| (0..SIZE.height).map(move |y| (x, y))) {
+            let near = |a: u32, b: u32| a.abs_diff(b) <= REACH as u32;
+            let columns = (0..SIZE.width).filter(|&column| near(column, x));
+            let neighbours = columns.flat_map(|column| {
+                let rows = (0..SIZE.height).filter(|&row| near(row, y));
+                rows.map(move |row| 0.5 * radiance(column, row))
+            });
+            let count = neighbours.clone().count() as f32;
+            let expected = neighbours.sum::<f32>() / count;
+            let brightness = knowledge.brightness(y * SIZE.width + x);
+            assert!((brightness - expected).abs() < 1e-4 * expected, "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn no_pixel_is_taken_to_be_black() {
+        let corner = |x, y| if (x, y) == (0, 0) { 84.0 } else { 0.0 };
+        let knowledge = PixelKnowledge::new(&observed(corner), SIZE);
+        // 84 in 42 pixels of two paths: the mean is 1.
+        assert_eq!(knowledge.brightness(0), 84.0 / 18.0);
+        assert_eq!(knowledge.brightness(41), DARKEST);
+    }
+
+    #[test]
+    fn the_factor_is_that_of_cost_and_relative_variance() {
+        // Of two paths one brings 2 and the other nothing: mean 1, variance 1, for five rays each.
+        let knowledge = PixelKnowledge::new(&observed(|_, _| 2.0), SIZE);
+        assert!((knowledge.factor() - 5.0_f32.sqrt()).abs() < 1e-5);
+        let brighter = PixelKnowledge::new(&observed(|_, _| 2000.0), SIZE);
+        assert!((brighter.factor() - knowledge.factor()).abs() < 1e-5);
+    }
+
+    #[test]
+    fn where_nothing_was_seen_nothing_is_known() {
+        for pixels in [Vec::new(), observed(|_, _| 1.0).split_off(1)] {
+            let knowledge = PixelKnowledge::new(&pixels, SIZE);
+            assert_eq!(knowledge.brightness(0), 0.0);
+        }
+        let black = PixelKnowledge::new(&observed(|_, _| 0.0), SIZE);
+        assert_eq!((black.brightness(0), black.factor()), (0.0, 1.0));
+        assert_eq!(black.brightness(1000), 0.0);
+    }
+}

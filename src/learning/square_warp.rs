@@ -54,12 +54,13 @@ impl SquareWarp {
     pub fn new(values: &[[f32; SIDE]; SIDE]) -> Self {
         let bins = (SIDE * SIDE) as f32;
         let mean = values.iter().flatten().sum::<f32>() / bins;
-        let scale = if mean > 0.0 && mean < f32::INFINITY {
-            TRUST / mean
+        let scale = TRUST / mean;
+        // Sums of bright light can be infinite, and where all is dark their reciprocal is.
+        let density = if mean < f32::INFINITY && scale < f32::INFINITY {
+            values.map(|row| row.map(|value| 1.0 - TRUST + scale * value))
         } else {
-            0.0
+            [[1.0; SIDE]; SIDE]
         };
-        let density = values.map(|row| row.map(|value| 1.0 - TRUST + scale * value));
         let sums = density.map(|row| row.iter().sum::<f32>());
         Self {
             rows: cumulative(&sums),
@@ -187,8 +188,11 @@ mod tests {
 
     #[test]
     fn nothing_learned_is_uniform() {
-        for value in [0.0, f32::INFINITY, f32::NAN] {
-            let warp = SquareWarp::new(&[[value; SIDE]; SIDE]);
+        for value in [0.0, 1e-40, f32::MAX, f32::INFINITY, f32::NAN] {
+            let mut values = [[0.0; SIDE]; SIDE];
+            values[3] = [value; SIDE];
+            values[4] = [value; SIDE];
+            let warp = SquareWarp::new(&values);
             let (point, density) = warp.warp([0.3, 0.9]);
             assert!((density - 1.0).abs() < 1e-6, "{value}: {density}");
             assert!((point[0] - 0.3).abs() < 1e-6 && (point[1] - 0.9).abs() < 1e-6);

@@ -2,6 +2,7 @@
 
 use std::num::NonZeroU32;
 use std::sync::Arc;
+use std::time::Duration;
 
 use cohort::render::{Budget, Render, Settings, StopFlag};
 use cohort::scene::{LoadOptions, Scene};
@@ -30,7 +31,7 @@ pub fn replicates(
     spp: u32,
 ) -> Replicates {
     let what = format!("{} {:?}", scene.name, settings.strategy);
-    let (replicates, believed) = render_all(scene, settings, seeds, spp);
+    let (replicates, believed) = render_all(scene, in_full_passes(settings, spp), seeds, spp);
     if let Some(believed) = believed {
         check_believed_noise(&what, &replicates, believed);
     }
@@ -46,7 +47,30 @@ pub fn replicates_with_rare_highlights(
     seeds: std::ops::Range<u64>,
     spp: u32,
 ) -> Replicates {
+    render_all(scene, in_full_passes(settings, spp), seeds, spp).0
+}
+
+/// As [`replicates_with_rare_highlights`], in growing passes of 1, 1, 2, 4, 8 … samples: a render that learns does so after each, so that a few
+/// samples are enough to see what becomes of what it has learned.
+#[allow(dead_code)]
+pub fn replicates_in_growing_passes(
+    scene: &Arc<Scene>,
+    settings: Settings,
+    seeds: std::ops::Range<u64>,
+    spp: u32,
+) -> Replicates {
+    let budget = Budget::Time(Duration::MAX);
+    let settings = Settings { budget, ..settings };
     render_all(scene, settings, seeds, spp).0
+}
+
+fn in_full_passes(settings: Settings, spp: u32) -> Settings {
+    let budget = samples_per_pixel(spp);
+    Settings { budget, ..settings }
+}
+
+fn samples_per_pixel(spp: u32) -> Budget {
+    Budget::SamplesPerPixel(NonZeroU32::new(spp).expect("there are samples"))
 }
 
 /// The images, and the mean variance of a pixel in three channels that their films believe in.
@@ -57,15 +81,14 @@ fn render_all(
     spp: u32,
 ) -> (Replicates, Option<[f64; 3]>) {
     let what = format!("{} {:?}", scene.name, settings.strategy);
-    let budget = Budget::SamplesPerPixel(NonZeroU32::new(spp).expect("there are samples"));
-    let settings = Settings { budget, ..settings };
     let render = Render::new(Arc::clone(scene), settings).expect("the scene can be rendered");
     let mut replicates = Replicates::new(scene.film.crop.size);
     let mut believed = Some([0.0; 3]);
     let count = (seeds.end - seeds.start) as f64;
     for seed in seeds {
         let mut state = render.start(seed);
-        let ended = render.advance(&mut state, budget, &StopFlag::new(), &());
+        let until = samples_per_pixel(spp);
+        let ended = render.advance(&mut state, until, &StopFlag::new(), &());
         let outcome = state.into_outcome(ended);
         assert_eq!(
             (

@@ -1,0 +1,158 @@
+//! Guided directions: the same image as without, whatever was learned, with less noise where light comes from few directions.
+
+mod support;
+
+use std::num::NonZeroU32;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use cohort::render::{ColourMode, Settings, WavelengthCount};
+use cohort::sampling::SamplerKind;
+use cohort::scene::{LoadOptions, Scene};
+use cohort::walk::{StrategyKind, StrategyOptions};
+
+use support::estimate::{Estimate, sidak_threshold};
+use support::files;
+use support::render::{many_emitters, replicates_in_growing_passes};
+
+const SPECTRAL: ColourMode = ColourMode::Spectral(WavelengthCount::Four);
+
+fn settings(strategy: StrategyKind, sampler: SamplerKind, colour: ColourMode) -> Settings {
+    let strategy = strategy.build(&StrategyOptions::default());
+    Settings {
+        strategy: strategy.expect("defaults are valid"),
+        sampler,
+        colour,
+        guiding: true,
+        // For the strategy that never ends a path.
+        max_depth: NonZeroU32::new(12),
+        ..Settings::default()
+    }
+}
+
+/// A scene of 24 x 24 pixels.
+fn small(path: &str) -> Arc<Scene> {
+    let options = LoadOptions {
+        definitions: vec![("size".into(), "24".into())],
+        models: None,
+    };
+    let path: PathBuf = files::of_project(path);
+    Arc::new(Scene::load(path, &options).expect("the scene can be loaded"))
+}
+
+/// The blocks of 8 x 8 pixels, in all channels, of images without and with guiding.
+struct Blocks {
+    plain: [Vec<Estimate>; 3],
+    scene: Arc<Scene>,
+    colour: ColourMode,
+}
+
+impl Blocks {
+    /// Those of plain roulette.
+    fn of(scene: Arc<Scene>, colour: ColourMode) -> Self {
+        let plain = Settings {
+            guiding: false,
+            ..settings(StrategyKind::Roulette, SamplerKind::Independent, colour)
+        };
+        Self {
+            plain: replicates_in_growing_passes(&scene, plain, 0..64, 32).blocks(8),
+            scene,
+            colour,
+        }
+    }
+
+    /// Checks that guided images of a `strategy` and a `sampler` are the same, of which there are `cases`.
+    fn check(&self, what: &str, strategy: StrategyKind, sampler: SamplerKind, cases: usize) {
+        let settings = settings(strategy, sampler, self.colour);
+        let guided = replicates_in_growing_passes(&self.scene, settings, 1000..1032, 32);
+        let guided = guided.blocks(8);
+        let pairs = guided.iter().flatten().zip(self.plain.iter().flatten());
+        let limit = sidak_threshold(1e-3, cases * pairs.clone().count());
+        let mut largest = 0.0_f64;
+        for (block, (a, b)) in pairs.enumerate() {
+            let z = a.z_of_difference(b);
+            largest = largest.max(z.abs());
+            assert!(
+                z.abs() < limit,
+                "{what}, {strategy}, {sampler}, block {block}: {a:?} {b:?}, z = {z}"
+            );
+        }
+        println!("{what}, {strategy}, {sampler}: |z| up to {largest:.2} of {limit:.2}");
+    }
+}
+
+#[test]
+fn every_strategy_renders_the_same_image_guided_as_not() {
+    let blocks = Blocks::of(many_emitters(24), ColourMode::Rgb);
+    let cases = SamplerKind::ALL.len() * StrategyKind::ALL.len();
+    for sampler in SamplerKind::ALL {
+        for strategy in StrategyKind::ALL {
+            blocks.check("many emitters", strategy, sampler, cases);
+        }
+    }
+}
+
+/// Rough metal and glass, mirrors, plastics, mixtures, masks, textures, instances, dispersion.
+#[test]
+fn every_surface_looks_the_same_guided_as_not() {
+    let scenes = [
+        ("tests/scenes/metals-and-glass.xml", ColourMode::Rgb),
+        ("tests/scenes/plastics.xml", ColourMode::Rgb),
+        ("tests/scenes/textures.xml", SPECTRAL),
+        ("tests/scenes/instances.xml", SPECTRAL),
+        ("scenes/gallery/dispersion.xml", SPECTRAL),
+    ];
+    let cases = [
+        (StrategyKind::Roulette, SamplerKind::Independent),
+        (StrategyKind::Roulette, SamplerKind::ArrayQmc),
+        (StrategyKind::ParticleFilter, SamplerKind::ArrayQmc),
+    ];
+    for (path, colour) in scenes {
+        let blocks = Blocks::of(small(path), colour);
+        for (strategy, sampler) in cases {
+            blocks.check(path, strategy, sampler, scenes.len() * cases.len());
+        }
+    }
+}
+
+/// A room that a lamp lights by way of one spot of its ceiling: all light comes from there.
+const INDIRECT: &str = r#"<scene version="3.0.0">
+    <integrator type="path"/>
+    <sensor type="perspective">
+        <float name="fov" value="60"/>
+        <transform name="to_world"><lookat origin="0, -0.2, -0.95" target="0, -0.3, 0" up="0, 1, 0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="16"/><rfilter type="box"/></film>
+    </sensor>
+    <shape type="cube">
+        <boolean name="flip_normals" value="true"/>
+        <bsdf type="diffuse"><float name="reflectance" value="0.6"/></bsdf>
+    </shape>
+    <shape type="rectangle">
+        <transform name="to_world"><scale value="0.1"/><rotate x="1" angle="-90"/><translate x="0.6" y="0.9" z="0.6"/></transform>
+        <bsdf type="diffuse"><float name="reflectance" value="0"/></bsdf>
+        <emitter type="area"><float name="radiance" value="100"/></emitter>
+    </shape>
+</scene>"#;
+
+#[test]
+fn guided_directions_leave_less_noise() {
+    let scene = Scene::from_xml(INDIRECT, &LoadOptions::default());
+    let scene = Arc::new(scene.expect("the scene can be loaded"));
+    for sampler in SamplerKind::ALL {
+        let noise = |guiding| {
+            let settings = Settings {
+                guiding,
+                ..settings(StrategyKind::Roulette, sampler, ColourMode::Rgb)
+            };
+            let images = replicates_in_growing_passes(&scene, settings, 0..24, 64);
+            let blocks = images.blocks(1);
+            blocks.iter().flatten().map(|pixel| pixel.variance).sum()
+        };
+        let [plain, guided]: [f64; 2] = [noise(false), noise(true)];
+        println!(
+            "{sampler}: variance {plain:.3e}, guided {guided:.3e}: {:.2}",
+            plain / guided
+        );
+        assert!(guided < 0.85 * plain, "{sampler}: {guided} against {plain}");
+    }
+}
