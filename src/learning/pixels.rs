@@ -172,11 +172,13 @@ mod tests {
 
     #[test]
     fn the_factor_is_that_of_cost_and_relative_variance() {
-        // Of two paths one brings 2 and the other nothing: mean 1, variance 1, for five rays each.
+        // Of two paths one brings 2 and the other nothing: mean 1, variance 2, for five rays each.
         let knowledge = PixelKnowledge::new(&observed(|_, _| 2.0), SIZE);
-        assert!((knowledge.factor() - 5.0_f32.sqrt()).abs() < 1e-5);
+        assert!((knowledge.relative_factor() - 2.5_f32.sqrt()).abs() < 1e-5);
         let brighter = PixelKnowledge::new(&observed(|_, _| 2000.0), SIZE);
-        assert!((brighter.factor() - knowledge.factor()).abs() < 1e-5);
+        assert!((brighter.relative_factor() - knowledge.relative_factor()).abs() < 1e-5);
+        let dearer = brighter.absolute_factor() * 1000.0;
+        assert!((dearer - knowledge.absolute_factor()).abs() < 1e-4);
     }
 
     #[test]
@@ -186,7 +188,7 @@ mod tests {
             assert_eq!(knowledge.brightness(0), 0.0);
         }
         let black = PixelKnowledge::new(&observed(|_, _| 0.0), SIZE);
-        assert_eq!((black.brightness(0), black.factor()), (0.0, 1.0));
+        assert_eq!((black.brightness(0), black.relative_factor()), (0.0, 1.0));
         assert_eq!(black.brightness(1000), 0.0);
     }
 }

@@ -3,22 +3,21 @@
 use std::ops::Range;
 
 use super::arrange::Arrangement;
-use super::batch::{CameraPaths, Particles, Segments, ShadowRays, Vertices};
+use super::batch::{CameraPaths, Segments, ShadowRays, Vertices};
 use super::engine::{Engine, TileJob};
 use super::lineage::Lineage;
-use super::recollection::Recollection;
 use super::recorded_rays::RecordedRays;
 use super::settings::DirectLight;
 use super::stages::{Stage, Stopwatch};
 use super::statistics::TraceStatistics;
 use super::variant::Variant;
+use super::walk_stage::Decision;
 use super::{camera, direct, emission, hidden_emitters, intersect, scatter, splat, walk_stage};
 use crate::embree::Coherence;
 use crate::film::FilmTile;
 use crate::learning::Knowledge;
 use crate::sampling::Sampler;
 use crate::spectrum::Colour;
-use crate::walk::Offspring;
 
 /// After so many bounces a batch is cut off and the cut is reported: only light that never dies gets here.
 const MAX_BOUNCES: u32 = 1 << 16;
@@ -34,9 +33,7 @@ pub(super) struct Pipeline<C: Colour, V: Variant> {
     segments: Segments<C>,
     vertices: Vertices<C, V>,
     shadow: ShadowRays<C>,
-    particles: Particles,
-    recollection: Recollection,
-    offspring: Offspring,
+    decision: Decision,
     /// What was observed.
     pub lineage: Lineage,
     /// What was counted so far.
@@ -53,9 +50,7 @@ impl<C: Colour, V: Variant> Default for Pipeline<C, V> {
             segments: Segments::new(),
             vertices: Vertices::new(),
             shadow: ShadowRays::new(),
-            particles: Particles::default(),
-            recollection: Recollection::default(),
-            offspring: Offspring::default(),
+            decision: Decision::default(),
             lineage: Lineage::default(),
             statistics: TraceStatistics::default(),
             recorded: None,
@@ -198,33 +193,25 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 );
                 stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
             }
-            let learned = job
-                .knowledge
-                .filter(|_| engine.strategy().learns())
-                .and_then(|knowledge| {
-                    self.recollection
-                        .recall(knowledge, &self.paths, &self.vertices)
-                });
             self.statistics.walk += walk_stage::decide(
                 engine.strategy(),
+                job.knowledge,
+                &self.paths,
                 &self.vertices,
-                job.samples,
                 depth,
-                &mut self.particles,
-                learned,
                 sampler,
-                &mut self.offspring,
+                &mut self.decision,
             );
+            let offspring = &mut self.decision.offspring;
             if engine.settings.samples.directions != 1 {
-                self.offspring
-                    .split_each(engine.settings.samples.directions);
+                offspring.split_each(engine.settings.samples.directions);
             }
             stopwatch.lap(Stage::Walk, &mut self.statistics.stages);
             scatter::scatter(
                 engine,
                 &self.paths,
                 &self.vertices,
-                self.offspring.children(),
+                offspring.children(),
                 sampler,
                 guide,
                 &mut self.segments,

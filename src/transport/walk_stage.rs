@@ -2,33 +2,43 @@
 
 use multiversion::multiversion;
 
-use super::batch::{Particles, Vertices};
+use super::batch::{CameraPaths, Particles, Vertices};
+use super::recollection::Recollection;
 use super::variant::{Scattering, Variant};
+use crate::learning::Knowledge;
 use crate::sampling::Sampler;
 use crate::spectrum::{Colour, SpectrumArithmetic};
-use crate::walk::{Learned, Offspring, Population, Scalar, Scope, Strategy, WalkReport};
+use crate::walk::{Offspring, Population, Scalar, Scope, Strategy, WalkReport};
 
-/// Shows the vertices to the strategy as a population and lets it fill `offspring`.
+/// What a thread needs to let strategies decide; its memory is reused.
+#[derive(Default)]
+pub(super) struct Decision {
+    particles: Particles,
+    recollection: Recollection,
+    /// What was decided last.
+    pub offspring: Offspring,
+}
+
+/// Shows the vertices to the strategy as a population, with what is known of them if it asks, and lets it decide.
 ///
-/// `samples` is the number of camera paths of each pixel, `depth` the number of scattering events before these vertices.
+/// `depth` is the number of scattering events before these vertices.
 pub(super) fn decide<C: Colour, V: Variant>(
     strategy: &dyn Strategy,
+    knowledge: Option<&Knowledge>,
+    paths: &CameraPaths<C>,
     vertices: &Vertices<C, V>,
-    samples: u32,
     depth: u32,
-    particles: &mut Particles,
-    learned: Option<Learned<'_>>,
     sampler: &mut Sampler,
-    offspring: &mut Offspring,
+    decision: &mut Decision,
 ) -> WalkReport {
-    particles.resize(vertices.len());
-    show(
-        vertices,
-        strategy.scalar(),
-        strategy.scope(),
-        samples,
+    let Decision {
         particles,
-    );
+        recollection,
+        offspring,
+    } = decision;
+    particles.resize(vertices.len());
+    let (scalar, scope) = (strategy.scalar(), strategy.scope());
+    show(vertices, scalar, scope, paths.samples, particles);
     let population = Population {
         importance: &particles.importance,
         albedo: &particles.albedo,
@@ -36,7 +46,9 @@ pub(super) fn decide<C: Colour, V: Variant>(
         group: &particles.group,
         depth,
         points: sampler.decisions(&vertices.point),
-        learned,
+        learned: knowledge
+            .filter(|_| strategy.learns())
+            .and_then(|knowledge| recollection.recall(knowledge, paths, vertices)),
     };
     strategy.resample(&population, sampler.stream(), offspring)
 }

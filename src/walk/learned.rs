@@ -22,7 +22,7 @@ pub struct Learned<'a> {
     pub cost: &'a [f32],
     /// Throughput times albedo, as a mean over wavelengths: what multiplies the value.
     pub reflected: &'a [f32],
-    /// The mean radiance of the particle's pixel, positive.
+    /// The mean radiance of the particle's pixel; 0 where nothing is known.
     pub brightness: &'a [f32],
     /// The square root of what a camera path costs over its relative variance, each as a mean over the image.
     pub relative_factor: f32,

@@ -60,9 +60,10 @@ impl Population<'_> {
     /// What was learned, if anything was of particle number `index`.
     #[inline(always)]
     pub(super) fn known(&self, index: usize) -> Option<&Learned<'_>> {
+        // Where no light was found yet, it may be there all the same.
         self.learned
             .as_ref()
-            .filter(|learned| learned.square[index] >= 0.0)
+            .filter(|learned| learned.square[index] > 0.0 && learned.brightness[index] > 0.0)
     }
 
     /// Each particle in turn.

@@ -2,6 +2,7 @@
 
 mod furnace;
 mod invariants;
+mod learned;
 mod means;
 mod paper;
 mod rules;
