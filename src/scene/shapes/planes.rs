@@ -76,9 +76,9 @@ impl<const N: usize> PlaneLanes<N> {
         t: &[f32; N],
         points: &mut SurfaceLanes<N>,
     ) {
-        for i in 0..N {
+        for (i, &t) in t.iter().enumerate() {
             let normal = self.normal.get(i);
-            let along = origins.get(i) + t[i] * directions.get(i);
+            let along = origins.get(i) + t * directions.get(i);
             let position = along - (normal.dot(along) - self.distance[i]) * normal;
             let choose = |flat: Vec3, other: Vec3| {
                 let choose = |flat, other| if self.is_set[i] { flat } else { other };
