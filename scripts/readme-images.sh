@@ -31,7 +31,11 @@ halve cornell-knot
 for model in armadillo lucy; do
     for strategy in roulette go-with-the-winners particle-filter; do
         name=$model-$strategy
-        "$cohort" render "scenes/cornell-$model.xml" --strategy "$strategy" --time "${seconds}s" -o "$work/$name.exr"
+        rule=()
+        if [ "$strategy" = particle-filter ]; then
+            rule=(--rule importance)
+        fi
+        "$cohort" render "scenes/cornell-$model.xml" --strategy "$strategy" "${rule[@]}" --time "${seconds}s" -o "$work/$name.exr"
         halve "$name"
     done
 done
