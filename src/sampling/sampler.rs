@@ -336,6 +336,28 @@ mod tests {
         assert_eq!(parts, [1; 16]);
     }
 
+    /// What was learned from some numbers never meets them again.
+    #[test]
+    fn every_lesson_begins_other_sequences() {
+        for kind in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
+            let mut drawn = [0, 1, 2].map(|lessons| {
+                let mut sampler = Sampler::new(kind, KEY, 5, lessons);
+                let point = match sampler.ranks() {
+                    Some(mut ranks) => ranks.next(4),
+                    None => sampler.point(4, 0),
+                };
+                let [u] = numbers(&mut sampler, point, Use::Direction(1));
+                let [film] = numbers(&mut sampler, point, Use::Camera);
+                [u, film].map(f32::to_bits)
+            });
+            for k in 0..2 {
+                drawn.sort_unstable_by_key(|numbers| numbers[k]);
+                let differ = |pair: &[[u32; 2]]| pair[0][k] != pair[1][k];
+                assert!(drawn.windows(2).all(differ), "{kind}: {drawn:?}");
+            }
+        }
+    }
+
     /// The particles of a pixel are numbered from its samples in earlier passes on, and pixels have lattices of their own.
     #[test]
     fn ranks_go_on_from_pass_to_pass() {
