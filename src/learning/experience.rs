@@ -157,7 +157,7 @@ impl Sums {
             (own + OF_FAMILY * prior) / (self.count + OF_FAMILY)
         };
         Insight {
-            warp: SquareWarp::new(&radiance),
+            warp: SquareWarp::new(&radiance, family.count),
             mean: filled(self.value, family.value),
             square: filled(self.square, family.square),
             cost: filled(self.cost, family.cost),

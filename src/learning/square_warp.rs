@@ -9,8 +9,12 @@ use serde::{Deserialize, Serialize};
 /// Rows and columns.
 pub const SIDE: usize = 8;
 
-/// The share of the histogram; the rest is uniform.
+/// The share of a histogram that is well known; the rest is uniform.
 const TRUST: f32 = 0.7;
+
+/// With so many observations in a bin, half of that share is trusted to its histogram. The weights 1/h of a long path multiply: where h is noise
+/// alone, so does the noise.
+const HALF_KNOWN: f32 = 4.0;
 
 /// The largest number below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
@@ -50,14 +54,16 @@ pub struct SquareWarp {
 }
 
 impl SquareWarp {
-    /// The density that is in proportion to `values`, not negative, but for its uniform part.
-    pub fn new(values: &[[f32; SIDE]; SIDE]) -> Self {
+    /// The density that is in proportion to `values`, not negative, but for its uniform part: the smaller, the more `observations` of
+    /// all bins together the values come from.
+    pub fn new(values: &[[f32; SIDE]; SIDE], observations: f32) -> Self {
         let bins = (SIDE * SIDE) as f32;
+        let trust = TRUST * observations / (observations + HALF_KNOWN * bins);
         let mean = values.iter().flatten().sum::<f32>() / bins;
-        let scale = TRUST / mean;
+        let scale = trust / mean;
         // Sums of bright light can be infinite, and where all is dark their reciprocal is.
         let density = if mean < f32::INFINITY && scale < f32::INFINITY {
-            values.map(|row| row.map(|value| 1.0 - TRUST + scale * value))
+            values.map(|row| row.map(|value| 1.0 - trust + scale * value))
         } else {
             [[1.0; SIDE]; SIDE]
         };
@@ -141,7 +147,7 @@ mod tests {
     proptest! {
         #[test]
         fn the_density_has_mean_one_and_is_bounded_from_below(values in values()) {
-            let warp = SquareWarp::new(&values);
+            let warp = SquareWarp::new(&values, 1e6);
             let bins = (0..64).map(|place| warp.density(Bin(place)));
             let mean: f32 = bins.clone().sum::<f32>() / 64.0;
             prop_assert!((mean - 1.0).abs() < 1e-4, "{mean}");
@@ -152,7 +158,7 @@ mod tests {
 
         #[test]
         fn points_go_where_the_density_says(values in values(), u in 0.0..1.0_f32, v in 0.0..1.0_f32) {
-            let warp = SquareWarp::new(&values);
+            let warp = SquareWarp::new(&values, 1e6);
             let (point, density) = warp.warp([u, v]);
             prop_assert!(point.iter().all(|u| (0.0..1.0).contains(u)));
             prop_assert_eq!(density, warp.density(Bin::of(point)));
@@ -166,7 +172,7 @@ mod tests {
         values[2][5] = 10.0;
         values[2][6] = 1.0;
         values[7][0] = 3.0;
-        let warp = SquareWarp::new(&values);
+        let warp = SquareWarp::new(&values, 1e6);
         const N: u32 = 1 << 20;
         let mut counts = [0.0; 64];
         for i in 0..N {
@@ -187,12 +193,25 @@ mod tests {
     }
 
     #[test]
+    fn the_less_was_observed_the_less_is_trusted() {
+        let mut values = [[0.0; SIDE]; SIDE];
+        values[3][3] = 1.0;
+        let peak = |observations| {
+            let warp = SquareWarp::new(&values, observations);
+            warp.density(Bin::of([3.5 / 8.0; 2]))
+        };
+        assert_eq!(peak(0.0), 1.0);
+        assert!((peak(HALF_KNOWN * 64.0) - 1.0 - 0.5 * TRUST * 63.0).abs() < 1e-3);
+        assert!(peak(1e9) > 44.0);
+    }
+
+    #[test]
     fn nothing_learned_is_uniform() {
         for value in [0.0, 1e-40, f32::MAX, f32::INFINITY, f32::NAN] {
             let mut values = [[0.0; SIDE]; SIDE];
             values[3] = [value; SIDE];
             values[4] = [value; SIDE];
-            let warp = SquareWarp::new(&values);
+            let warp = SquareWarp::new(&values, 1e6);
             let (point, density) = warp.warp([0.3, 0.9]);
             assert!((density - 1.0).abs() < 1e-6, "{value}: {density}");
             assert!((point[0] - 0.3).abs() < 1e-6 && (point[1] - 0.9).abs() < 1e-6);

@@ -141,6 +141,11 @@ impl Render {
         &self.settings
     }
 
+    /// Whether guiding or the strategy asks for what can be learned.
+    fn learns(&self) -> bool {
+        self.settings.guiding || self.engine.strategy().learns()
+    }
+
     /// Whether the scene asks for the second moments of its samples.
     fn asks_for_moments(&self) -> bool {
         self.engine.scene().integrator.moments.is_some()
@@ -170,18 +175,20 @@ impl Render {
         } else {
             film
         };
-        let learns = self.settings.guiding || self.engine.strategy().learns();
-        let knowledge = learns.then(|| Knowledge::nothing(self.engine.bounds(), size));
+        let knowledge = self
+            .learns()
+            .then(|| Knowledge::nothing(self.engine.bounds(), size));
         RenderState::new(film, knowledge, seed)
     }
 
     /// Whether [`advance`](Self::advance) can go on from `state`, which may come from a file: whether its image has the
-    /// size and the sums of this render's. That scene and settings are the same is for the caller to know.
+    /// size and the sums of this render's, and whether both learn. That scene and settings are the same is for the caller to know.
     pub fn fits(&self, state: &RenderState) -> bool {
         let size = self.engine.scene().film.crop.size;
         let (sums, moments) = (self.settings.film_sums, self.asks_for_moments());
         state.film.is_like_new(size, sums, moments)
             && state.pass.done.len() == state.film.tiles().len()
+            && state.knowledge.is_some() == self.learns()
     }
 
     /// Goes on with a render until it has used up `until`, which is counted from its very start and over all pixels, or
