@@ -213,7 +213,11 @@ impl Render {
     ) -> Ended {
         assert!(self.fits(state), "the state is of another image");
         let watch = Watch::new(state, until, stop, observer);
-        let schedule = Schedule::new(self.settings.budget, self.settings.sampler);
+        let schedule = Schedule::new(
+            self.settings.budget,
+            self.settings.sampler,
+            state.film.size().pixels(),
+        );
         let ended = self.pool.install(|| {
             loop {
                 if !state.pass.plan(schedule, until) {

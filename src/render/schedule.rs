@@ -7,8 +7,11 @@ use crate::sampling::SamplerKind;
 /// population (a quarter and four times as many were not faster or slower beyond noise).
 const FULL_PASS: u32 = 16;
 
-/// The most samples per pixel from which a render learns.
-const LESSONS: u32 = 32;
+/// The most samples per pixel from which a render learns, and the fewest.
+const LESSONS: [u32; 2] = [32, 8];
+
+/// With so many camera paths, an image of many pixels has learned enough.
+const TEACHING_PATHS: usize = 1 << 21;
 
 /// The most samples per pixel of a pass that grows.
 const LARGEST_PASS: u32 = 256;
@@ -21,12 +24,17 @@ const LARGEST_PASS: u32 = 256;
 pub struct Schedule {
     budget: Budget,
     sampler: SamplerKind,
+    pixels: usize,
 }
 
 impl Schedule {
-    /// The schedule for a budget.
-    pub fn new(budget: Budget, sampler: SamplerKind) -> Self {
-        Self { budget, sampler }
+    /// The schedule for a budget, in an image of so many pixels.
+    pub fn new(budget: Budget, sampler: SamplerKind, pixels: usize) -> Self {
+        Self {
+            budget,
+            sampler,
+            pixels,
+        }
     }
 
     /// Samples per pixel of pass number `pass` (from 0), where every pixel has `before` of the passes before and the
@@ -51,15 +59,19 @@ impl Schedule {
     }
 
     /// Whether a render that learns does so from a pass before which every pixel has had so many samples: from the first quarter of a given
-    /// number, and never from more than [`LESSONS`].
+    /// number, and never from more than [`LESSONS`] and [`TEACHING_PATHS`] allow.
     pub fn teaches(&self, before: u64) -> bool {
         before < u64::from(self.lessons())
     }
 
     fn lessons(&self) -> u32 {
+        let [most, fewest] = LESSONS;
+        // It fits, being small.
+        let enough =
+            (TEACHING_PATHS / self.pixels.max(1)).clamp(fewest as usize, most as usize) as u32;
         match self.budget {
-            Budget::SamplesPerPixel(total) => LESSONS.min(total.get() / 4),
-            Budget::Time(_) | Budget::Rays(_) => LESSONS,
+            Budget::SamplesPerPixel(total) => enough.min(total.get() / 4),
+            Budget::Time(_) | Budget::Rays(_) => enough,
         }
     }
 
@@ -97,7 +109,7 @@ mod tests {
     }
 
     fn passes(budget: Budget, until: Budget, most: usize) -> Vec<u32> {
-        let schedule = Schedule::new(budget, SamplerKind::Independent);
+        let schedule = Schedule::new(budget, SamplerKind::Independent, 1);
         let mut before = 0;
         let pass = |pass| {
             let samples = schedule.samples(pass, before, until);
@@ -121,7 +133,7 @@ mod tests {
     #[test]
     fn passes_grow_for_samplers_that_gain_by_it() {
         let sizes = |budget| {
-            let schedule = Schedule::new(budget, SamplerKind::ArrayQmc);
+            let schedule = Schedule::new(budget, SamplerKind::ArrayQmc, 1);
             let mut before = 0;
             let next = |pass| {
                 let samples = schedule.samples(pass, before, spp(2000));
@@ -139,10 +151,22 @@ mod tests {
     }
 
     #[test]
+    fn large_images_have_learned_enough_from_few_samples() {
+        let lessons = |budget, side: usize| {
+            let schedule = Schedule::new(budget, SamplerKind::Independent, side * side);
+            (0..).find(|&before| !schedule.teaches(before)).unwrap_or(0)
+        };
+        let timed = [1, 256, 400, 4096].map(|side| lessons(TIME, side));
+        assert_eq!(timed, [32, 32, 13, 8]);
+        let counted = [3, 64, 4096].map(|samples| lessons(spp(samples), 1));
+        assert_eq!(counted, [0, 16, 32]);
+    }
+
+    #[test]
     fn time_and_rays_start_small_and_never_end() {
         for budget in [TIME, RAYS] {
             assert_eq!(passes(budget, TIME, 8), [1, 1, 2, 4, 8, 16, 16, 16]);
-            let schedule = Schedule::new(budget, SamplerKind::Independent);
+            let schedule = Schedule::new(budget, SamplerKind::Independent, 1);
             assert_eq!(schedule.samples(u32::MAX, u64::MAX, RAYS), 16);
         }
         assert_eq!(passes(TIME, spp(13), usize::MAX), [1, 1, 2, 4, 5]);
