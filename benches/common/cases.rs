@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use cohort::models::{Model, ModelDirectories};
+use cohort::walk::CountRule;
 use cohort::{
     Budget, ColourMode, LoadOptions, Render, Scene, SceneError, Settings, StrategyKind,
     StrategyOptions, WavelengthCount,
@@ -32,7 +33,7 @@ pub struct Case {
     pub scene: Arc<Scene>,
     /// How colours are carried.
     pub colour: ColourMode,
-    /// The strategy, with its defaults.
+    /// The strategy.
     pub strategy: StrategyKind,
 }
 
@@ -54,10 +55,18 @@ impl Case {
         Ok(cases)
     }
 
+    /// The strategy's settings: its defaults, but that a particle filter counts by importance, for in few samples there is nothing to learn.
+    fn options(&self) -> StrategyOptions {
+        StrategyOptions {
+            rule: (self.strategy == StrategyKind::ParticleFilter).then_some(CountRule::Importance),
+            ..StrategyOptions::default()
+        }
+    }
+
     /// Ready to run on so many threads; each run traces the same paths.
     pub fn render(&self, threads: NonZeroUsize) -> Result<Render, Box<dyn Error>> {
         let settings = Settings {
-            strategy: self.strategy.build(&StrategyOptions::default())?,
+            strategy: self.strategy.build(&self.options())?,
             budget: Budget::SamplesPerPixel(SAMPLES),
             threads,
             colour: self.colour,
