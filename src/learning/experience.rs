@@ -347,7 +347,7 @@ mod tests {
             radiance,
             ..observation(address, 1.0)
         };
-        let everywhere = (0..640).map(|i| {
+        let everywhere = (0..4096).map(|i| {
             let [u, v] = [i % 8, i / 8 % 8].map(|k| (k as f32 + 0.5) / 8.0);
             from(u, v, if i % 64 == 19 { 64.0 } else { 0.0 })
         });
