@@ -97,7 +97,7 @@ fn settings_that_do_not_fit_the_strategy() {
         ),
         (
             ["--strategy", "particle-filter", "--threshold", "0.1"],
-            "the strategy `particle-filter` has no setting `threshold`; it has n-max, population, counts",
+            "the strategy `particle-filter` has no setting `threshold`; it has rule, objective, n-max, population, counts",
         ),
         (
             ["--strategy", "go-with-the-winners", "--n-max", "0"],
