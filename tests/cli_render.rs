@@ -244,7 +244,8 @@ fn every_strategy_and_all_its_settings() {
             ],
             "particle-filter",
             &[
-                ("n-max", "10"),
+                ("rule", "learned"),
+                ("objective", "relative"),
                 ("population", "camera-path"),
                 ("counts", "stratified"),
             ],
