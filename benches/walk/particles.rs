@@ -47,6 +47,7 @@ impl Particles {
             albedo: &self.albedo,
             shininess: &self.shininess,
             group: &self.group,
+            paths: self.importance.len() as u32,
             depth: DEPTH,
             points: None,
             learned: None,

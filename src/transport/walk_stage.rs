@@ -44,6 +44,7 @@ pub(super) fn decide<C: Colour, V: Variant>(
         albedo: &particles.albedo,
         shininess: &particles.shininess,
         group: &particles.group,
+        paths: paths.radiance.len() as u32,
         depth,
         points: sampler.decisions(&vertices.point),
         learned: knowledge

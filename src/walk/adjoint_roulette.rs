@@ -18,8 +18,7 @@
 //!
 //! **When it wins:** as `ears`; it looks at what paths are expected to bring alone, not at how much that varies, nor at what it costs.
 
-use super::ears::BOUNDS;
-use super::learned::before_lessons;
+use super::learned::{BOUNDS, before_lessons, bound};
 use super::{Population, Rounding, Scalar, Scope, Strategy};
 
 /// The ratio of the window's ends.
@@ -77,5 +76,6 @@ impl Strategy for AdjointRoulette {
             };
             *nu = count.clamp(least, most);
         }
+        bound(population, nu);
     }
 }

@@ -13,18 +13,15 @@
 //! v is what a child brings back, c the rays that it takes, I the brightness of the pixel. Ending a path is decided by the second moment,
 //! for it risks everything; splitting it by the variance, for copies share their mean: between them lies a range in which a path goes on alone.
 //!
-//! Before anything is learned, paths survive by half where their importance is below a tenth.
+//! All particles together get at most four children for each camera path. Before anything is learned, paths survive by half where their importance is below a tenth.
 //!
 //! **Settings**
 //! - `objective`: `relative` (default), the error relative to each pixel's brightness, as published, or `mse`, where I is 1 everywhere.
 //!
 //! **When it wins:** where paths differ much in what they are worth, as under light that arrives indirectly.
 
-use super::learned::before_lessons;
+use super::learned::{before_lessons, bound};
 use super::{Objective, Population, Rounding, Scalar, Scope, Strategy};
-
-/// The largest number of children, and the least.
-pub(super) const BOUNDS: [f32; 2] = [0.02, 20.0];
 
 /// Makes variance times cost least for each path; see the [module](self).
 #[derive(Clone, Copy, Debug, Default)]
@@ -68,21 +65,12 @@ impl Strategy for Ears {
     }
 
     fn expected_counts(&self, population: &Population, nu: &mut [f32]) {
-        let [least, most] = BOUNDS;
         for (index, nu) in nu.iter_mut().enumerate() {
-            let Some(learned) = population.known(index) else {
-                *nu = before_lessons(population, index);
-                continue;
-            };
-            let (mean, square) = (learned.mean[index], learned.square[index]);
-            let roulette = learned.efficient_count(self.objective, index, square);
-            let variance = (square - mean * mean).max(0.0);
-            let splitting = learned.efficient_count(self.objective, index, variance);
-            *nu = if roulette < 1.0 {
-                roulette.max(least)
-            } else {
-                splitting.clamp(1.0, most)
+            *nu = match population.known(index) {
+                Some(learned) => learned.efficient_count(self.objective, 1.0, index),
+                None => before_lessons(population, index),
             };
         }
+        bound(population, nu);
     }
 }

@@ -8,6 +8,12 @@ use std::str::FromStr;
 
 use serde::Serialize;
 
+/// The least and the largest number of children.
+pub(super) const BOUNDS: [f32; 2] = [0.02, 20.0];
+
+/// The most children of a generation for each camera path, on average.
+const MOST_PER_PATH: f64 = 4.0;
+
 /// What was learned before about the particles of a [`Population`]: one entry per particle in every slice.
 ///
 /// The *value* of going on at a particle is what one child of it would bring back if the surface's albedo and the particle's throughput were
@@ -80,22 +86,48 @@ impl Learned<'_> {
         columns.iter().all(|column| column.len() == count)
     }
 
-    /// The efficient number of children of particle number `index`, where `spread` is the mean square, or the variance, of the value; not
-    /// a number where nothing is known.
+    /// The efficient number of children of particle number `index`: of all counts it makes variance times cost least,
     ///
-    /// Of all counts it makes variance times cost least: nu = t sqrt(spread / cost), divided by the square root of the image's variance over
-    /// its cost (Rath et al. 2022, "EARS: Efficiency-Aware Russian Roulette and Splitting", equations 11 to 15; there t is the throughput relative to the pixel's
-    /// brightness).
+    /// ```text
+    /// nu_r = t sqrt(E[v^2] / c),   nu_s = t sqrt(Var[v] / c),   t = W a / I sqrt(image cost / image variance)
+    /// ```
+    ///
+    /// (Rath et al. 2022, "EARS: Efficiency-Aware Russian Roulette and Splitting", section 4). Ending a path is decided by nu_r, for it risks
+    /// everything; splitting it by nu_s, for copies share their mean. Between them lies a range in which a path goes on alone, and which is wider by the factor
+    /// `dead_zone`, at least 1, to both sides.
     #[inline(always)]
-    pub(super) fn efficient_count(&self, objective: Objective, index: usize, spread: f32) -> f32 {
-        let root = (spread / self.cost[index]).sqrt();
-        match objective {
-            Objective::Relative => {
-                let relative = self.reflected[index] / self.brightness[index];
-                self.relative_factor * relative * root
-            }
-            Objective::Mse => self.absolute_factor * self.reflected[index] * root,
+    pub(super) fn efficient_count(
+        &self,
+        objective: Objective,
+        dead_zone: f32,
+        index: usize,
+    ) -> f32 {
+        let [least, most] = BOUNDS;
+        let (mean, square) = (self.mean[index], self.square[index]);
+        let reflected = self.reflected[index];
+        let t = match objective {
+            Objective::Relative => self.relative_factor * reflected / self.brightness[index],
+            Objective::Mse => self.absolute_factor * reflected,
+        };
+        let count = |spread: f32| t * (spread / self.cost[index]).sqrt();
+        let roulette = count(square) * dead_zone;
+        if roulette < 1.0 {
+            return roulette.max(least);
         }
+        let splitting = count((square - mean * mean).max(0.0)) / dead_zone;
+        splitting.clamp(1.0, most)
+    }
+}
+
+/// Keeps the number of children that are expected of all particles together at or below [`MOST_PER_PATH`] for each camera path.
+///
+/// Where the image seems to be free of noise, paths that are not seem to be worth any number of rays, and a population would grow from bounce to bounce.
+pub(super) fn bound(population: &Population, nu: &mut [f32]) {
+    let sum: f64 = nu.iter().map(|&nu| f64::from(nu)).sum();
+    let most = MOST_PER_PATH * f64::from(population.paths);
+    if sum > most {
+        let scale = (most / sum) as f32;
+        nu.iter_mut().for_each(|nu| *nu *= scale);
     }
 }
 

@@ -32,6 +32,7 @@
 //!     albedo: &[0.5; 4],
 //!     shininess: &[0.0; 4],
 //!     group: &[0; 4],
+//!     paths: 4,
 //!     depth: 1,
 //!     points: None,
 //!     learned: None,

@@ -9,8 +9,9 @@
 //! nu_k = W_k a_k / I sqrt(E[v^2] / c) sqrt(image cost / image relative variance)
 //! ```
 //!
-//! v is what a child brings back, c the rays that it takes, I the brightness of the pixel. A dead zone leaves particles alone for which nu lies
-//! between 2/3 and 3/2, others are drawn to its edge; nu is kept from 0.02 to 20. Before anything is learned, it is W a.
+//! v is what a child brings back, c the rays that it takes, I the brightness of the pixel; counts above 1 go by Var\[v\] instead of E\[v^2\], as in
+//! [`ears`](super::ears). A dead zone leaves particles alone up to a factor of 3/2 beyond; nu is kept from 0.02 to 20, and all particles together get at most four children for
+//! each camera path. Before anything is learned, nu is W a.
 //!
 //! **By importance** (`rule` `importance`), as the paper has it, the resampling equalises the importance:
 //!
@@ -45,12 +46,12 @@ use std::str::FromStr;
 
 use serde::Serialize;
 
-use super::ears::BOUNDS;
+use super::learned::bound;
 use super::{
     ExpectedCount, Objective, Population, Rounding, Scalar, Scope, SettingError, Strategy,
 };
 
-/// Particles for which the learned nu lies between 1 and this, or its reciprocal, are left alone.
+/// By what factor the range is wider in which particles are left alone.
 const DEAD_ZONE: f32 = 1.5;
 
 /// By what a filter chooses the expected counts.
@@ -212,24 +213,12 @@ impl Strategy for ParticleFilter {
         let Some(objective) = self.objective else {
             return;
         };
-        let [least, most] = BOUNDS;
         for (index, nu) in nu.iter_mut().enumerate() {
             if let Some(learned) = population.known(index) {
-                let square = learned.square[index];
-                let count = learned.efficient_count(objective, index, square);
-                *nu = drawn_to_one(count).clamp(least, most);
+                *nu = learned.efficient_count(objective, DEAD_ZONE, index);
             }
         }
-    }
-}
-
-/// The count on the edge of the dead zone for one outside, 1 for those inside.
-#[inline(always)]
-fn drawn_to_one(count: f32) -> f32 {
-    if count > 1.0 {
-        (count / DEAD_ZONE).max(1.0)
-    } else {
-        (count * DEAD_ZONE).min(1.0)
+        bound(population, nu);
     }
 }
 

@@ -22,6 +22,8 @@ pub struct Population<'a> {
     pub shininess: &'a [f32],
     /// Which group the particle belongs to, as [`Strategy::scope`](super::Strategy::scope) asks; nondecreasing.
     pub group: &'a [u32],
+    /// How many camera paths they descend from, those that have ended included.
+    pub paths: u32,
     /// How often these particles have been scattered so far: 0 at the first vertex seen from the camera.
     pub depth: u32,
     /// Where the particles stand in sequences of evenly spread points, if they do: those who decide alone do so by

@@ -33,6 +33,7 @@ impl Known {
             albedo: &albedo,
             shininess: &vec![0.0; count],
             group: &vec![0; count],
+            paths: 1000,
             depth: 0,
             points: None,
             learned: Some(Learned {
@@ -55,16 +56,31 @@ fn filter(objective: Objective) -> ParticleFilter {
     ParticleFilter::learned(objective, Scope::Pixel, Rounding::Systematic).unwrap()
 }
 
-/// nu = 1/2 sqrt(square / 4), which a dead zone of 3/2 draws to 1.
+/// nu = 1/2 sqrt(square / 4) below 1, by the variance above; a dead zone of 3/2 draws both to 1.
 #[test]
-fn the_filter_asks_for_the_root_of_second_moment_over_cost() {
-    let known = Known::new(&[4.0, 16.0, 25.0, 144.0, 1e-9, 1e9]);
+fn the_filter_asks_for_the_root_of_second_moment_or_variance_over_cost() {
+    let known = Known::new(&[4.0, 16.0, 25.0, 148.0, 1e-9, 1e9]);
     assert_eq!(
         known.counts(&filter(Objective::Relative)),
         [0.75, 1.0, 1.0, 2.0, 0.02, 20.0]
     );
     // Twice as many by the other factor.
-    assert_eq!(known.counts(&filter(Objective::Mse))[..2], [1.0, 4.0 / 3.0]);
+    assert_eq!(
+        known.counts(&filter(Objective::Mse))[..2],
+        [1.0, (12.0_f32 / 4.0).sqrt() / 1.5]
+    );
+}
+
+/// However much is asked for, a generation has at most four children for each camera path.
+#[test]
+fn populations_cannot_explode() {
+    let known = Known::new(&[1e9; 3000]);
+    let strategies: [&dyn Strategy; 2] = [&filter(Objective::Relative), &Ears::default()];
+    for strategy in strategies {
+        let counts = known.counts(strategy);
+        let sum: f32 = counts.iter().sum();
+        assert!((sum - 4000.0).abs() < 1.0, "{strategy:?}: {sum}");
+    }
 }
 
 #[test]

@@ -55,6 +55,7 @@ impl Particles {
             shininess: &self.shininess,
             group: &self.group,
             depth,
+            paths: self.importance.len() as u32,
             points: None,
             learned: None,
         }
