@@ -228,6 +228,7 @@ fn every_strategy_and_all_its_settings() {
             ],
             "particle-filter",
             &[
+                ("rule", "importance"),
                 ("n-max", "2"),
                 ("population", "tile"),
                 ("counts", "residual"),
@@ -254,6 +255,7 @@ fn every_strategy_and_all_its_settings() {
             &["--strategy", "paper-particle-filter"],
             "particle-filter",
             &[
+                ("rule", "importance"),
                 ("n-max", "10"),
                 ("population", "camera-path"),
                 ("counts", "multinomial"),
