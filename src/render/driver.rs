@@ -216,6 +216,7 @@ impl Render {
         let schedule = Schedule::new(
             self.settings.budget,
             self.settings.sampler,
+            state.knowledge.is_some(),
             state.film.size().pixels(),
         );
         let ended = self.pool.install(|| {

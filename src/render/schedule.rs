@@ -24,15 +24,17 @@ const LARGEST_PASS: u32 = 256;
 pub struct Schedule {
     budget: Budget,
     sampler: SamplerKind,
+    learns: bool,
     pixels: usize,
 }
 
 impl Schedule {
-    /// The schedule for a budget, in an image of so many pixels.
-    pub fn new(budget: Budget, sampler: SamplerKind, pixels: usize) -> Self {
+    /// The schedule for a budget, in an image of so many pixels, of a render that `learns` from its first samples or not.
+    pub fn new(budget: Budget, sampler: SamplerKind, learns: bool, pixels: usize) -> Self {
         Self {
             budget,
             sampler,
+            learns,
             pixels,
         }
     }
@@ -41,19 +43,23 @@ impl Schedule {
     /// render goes on `until` then; 0 after the last pass.
     ///
     /// A given number of samples is divided into full passes and a rest. Other budgets have no end of their own, and
-    /// start with small passes, 1, 1, 2, 4, 8, so that every pixel has its first sample soon.
+    /// start with small passes, 1, 1, 2, 4, 8, so that every pixel has its first sample soon. So do renders that learn: what a sample
+    /// has taught is of use to all that follow.
     ///
     /// Where the samples of a pass gain by being many ([`SamplerKind::ArrayQmc`]), passes grow with the samples that a pixel has: to a
     /// quarter of them, so that pixels that the last pass does not reach any more lack little.
     pub fn samples(&self, pass: u32, before: u64, until: Budget) -> u32 {
-        let whole = match self.budget {
-            Budget::SamplesPerPixel(total) => self.full_pass(u64::from(total.get())),
-            Budget::Time(_) | Budget::Rays(_) => match pass {
-                0 => 1,
-                _ => (1 << (pass - 1).min(31)).min(self.full_pass(before)),
-            },
+        let full = self.full_pass(match self.budget {
+            Budget::SamplesPerPixel(total) => u64::from(total.get()),
+            Budget::Time(_) | Budget::Rays(_) => before,
+        });
+        let starts_small = self.learns || !matches!(self.budget, Budget::SamplesPerPixel(_));
+        let most = match pass {
+            _ if !starts_small => full,
+            0 => 1,
+            _ => 1 << (pass - 1).min(31),
         };
-        whole
+        full.min(most)
             .min(missing(self.budget, before))
             .min(missing(until, before))
     }
@@ -109,7 +115,7 @@ mod tests {
     }
 
     fn passes(budget: Budget, until: Budget, most: usize) -> Vec<u32> {
-        let schedule = Schedule::new(budget, SamplerKind::Independent, 1);
+        let schedule = Schedule::new(budget, SamplerKind::Independent, false, 1);
         let mut before = 0;
         let pass = |pass| {
             let samples = schedule.samples(pass, before, until);
@@ -133,7 +139,7 @@ mod tests {
     #[test]
     fn passes_grow_for_samplers_that_gain_by_it() {
         let sizes = |budget| {
-            let schedule = Schedule::new(budget, SamplerKind::ArrayQmc, 1);
+            let schedule = Schedule::new(budget, SamplerKind::ArrayQmc, false, 1);
             let mut before = 0;
             let next = |pass| {
                 let samples = schedule.samples(pass, before, spp(2000));
@@ -151,9 +157,23 @@ mod tests {
     }
 
     #[test]
+    fn renders_that_learn_start_small() {
+        let schedule = Schedule::new(spp(50), SamplerKind::Independent, true, 1);
+        let mut before = 0;
+        let passes: Vec<u32> = (0..8)
+            .map(|pass| {
+                let samples = schedule.samples(pass, before, TIME);
+                before += u64::from(samples);
+                samples
+            })
+            .collect();
+        assert_eq!(passes, [1, 1, 2, 4, 8, 16, 16, 2]);
+    }
+
+    #[test]
     fn large_images_have_learned_enough_from_few_samples() {
         let lessons = |budget, side: usize| {
-            let schedule = Schedule::new(budget, SamplerKind::Independent, side * side);
+            let schedule = Schedule::new(budget, SamplerKind::Independent, true, side * side);
             (0..).find(|&before| !schedule.teaches(before)).unwrap_or(0)
         };
         let timed = [1, 256, 400, 4096].map(|side| lessons(TIME, side));
@@ -166,7 +186,7 @@ mod tests {
     fn time_and_rays_start_small_and_never_end() {
         for budget in [TIME, RAYS] {
             assert_eq!(passes(budget, TIME, 8), [1, 1, 2, 4, 8, 16, 16, 16]);
-            let schedule = Schedule::new(budget, SamplerKind::Independent, 1);
+            let schedule = Schedule::new(budget, SamplerKind::Independent, false, 1);
             assert_eq!(schedule.samples(u32::MAX, u64::MAX, RAYS), 16);
         }
         assert_eq!(passes(TIME, spp(13), usize::MAX), [1, 1, 2, 4, 5]);
