@@ -115,12 +115,13 @@ impl CellTree {
         }
     }
 
-    /// Halves cells, again and again, as long as `count` says that more than `most` is in them, and until there are `limit` cells. A
-    /// half is taken to have half of what was in the whole; `halved` is told each cell with the new number of its second half.
+    /// Halves cells, again and again, as long as `count` says that more than `most` is in them; or more than twice, four times … as much, where there would
+    /// be more than `limit` cells. A half is taken to have half of what was in the whole; `halved` is told each cell with the new number of its
+    /// second half.
     pub fn refine(
         &mut self,
         count: &mut Vec<f64>,
-        most: f64,
+        mut most: f64,
         limit: u32,
         mut halved: impl FnMut(u32, u32),
     ) {
@@ -128,8 +129,12 @@ impl CellTree {
             let before = self.cells;
             let too_many: Vec<bool> = count.iter().map(|&count| count > most).collect();
             let wanted = too_many.iter().filter(|&&too_many| too_many).count();
-            if wanted == 0 || u64::from(before) + wanted as u64 > u64::from(limit) {
+            if wanted == 0 {
                 break;
+            }
+            if u64::from(before) + wanted as u64 > u64::from(limit) {
+                most *= 2.0;
+                continue;
             }
             self.halve(
                 |cell| too_many[cell as usize],
@@ -248,6 +253,13 @@ mod tests {
         let mut tree = unit(0);
         tree.refine(&mut vec![1e30], 1.0, 300, |_, _| ());
         assert_eq!(tree.cells(), 256);
+        // Where not all can be halved, the fullest are.
+        let mut grid = unit(1);
+        let mut counts = vec![10.0; 8];
+        counts[5] = 1000.0;
+        grid.refine(&mut counts, 1.0, 12, |_, _| ());
+        assert_eq!(grid.cells(), 11);
+        assert_eq!(counts[5], 250.0);
         // Nor smaller ones than coordinates can tell apart.
         let mut deep = unit(0);
         let mut counts = vec![1e30];

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::square_warp::{Bin, SIDE};
-use super::{CellTree, Insight, Observations, SquareWarp};
+use super::square_warp::SIDE;
+use super::{CellTree, Insight, Observation, Observations, PixelObservation, SquareWarp};
 use crate::sampling::FRAME_CLASSES;
 
 /// A cell is halved when more observations than this are in it: some dozens for each bin of the normals that it has.
@@ -20,59 +20,6 @@ const OF_FAMILY: f32 = 4.0;
 
 /// How many observations of its own mean each bin of a family is filled up with.
 const OF_MEAN: f32 = 2.0;
-
-/// What one path segment brought back to the vertex that it had left.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Observation {
-    /// Where the vertex was (see [`Knowledge::address`](super::Knowledge::address)).
-    pub address: u32,
-    /// The direction of the segment, if it is one of those that are learned.
-    pub bin: Option<Bin>,
-    /// The radiance that came along it.
-    pub radiance: f32,
-    /// What it was worth: an estimate of the light that the vertex reflects, with albedo 1.
-    pub value: f32,
-    /// How many rays were traced for it, all descendants included.
-    pub cost: f32,
-}
-
-/// What the camera paths of one pixel brought back.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PixelObservation {
-    /// Which pixel: row by row.
-    pub pixel: u32,
-    /// How many paths.
-    pub paths: u32,
-    /// The sum of their radiance.
-    pub radiance: f32,
-    /// The sum of the squares of their radiance.
-    pub square: f32,
-    /// The sum of their rays.
-    pub rays: f32,
-}
-
-impl PixelObservation {
-    /// The variance of the radiance of its paths; about `brightness`, where there is only one.
-    pub(super) fn variance(&self, brightness: f64) -> f64 {
-        let count = f64::from(self.paths);
-        let [mean, square] = [self.radiance, self.square].map(|sum| f64::from(sum) / count);
-        if self.paths > 1 {
-            ((square - mean * mean) * count / (count - 1.0)).max(0.0)
-        } else {
-            (mean - brightness).powi(2)
-        }
-    }
-
-    fn add(&mut self, other: &Self) {
-        if !(other.square >= 0.0 && other.square < f32::INFINITY) {
-            return;
-        }
-        self.paths += other.paths;
-        self.radiance += other.radiance;
-        self.square += other.square;
-        self.rays += other.rays;
-    }
-}
 
 /// All observations so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -131,7 +78,7 @@ impl Sums {
         }
     }
 
-    /// These sums, filled up with `count` observations like the `others` that a cell has in common with its family.
+    /// What these sums say, filled up with [`OF_FAMILY`] observations like those of the `family`.
     fn insight(&self, family: &Self) -> Insight {
         let mean = ratio(
             family
@@ -264,6 +211,7 @@ impl Experience {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learning::Bin;
     use glam::Vec3;
 
     fn tree() -> CellTree {
@@ -394,25 +342,5 @@ mod tests {
         for value in [f32::NAN, f32::INFINITY, -1.0, 1e30] {
             assert_eq!(observed([observation(7, value)]), nothing, "{value}");
         }
-        let mut experience = Experience::default();
-        let pixel = PixelObservation {
-            pixel: 2,
-            paths: 1,
-            radiance: 1.0,
-            square: 1.0,
-            rays: 5.0,
-        };
-        let squares = [1.0, f32::NAN, f32::INFINITY, 4.0];
-        experience.add(&Observations {
-            segments: Vec::new(),
-            pixels: squares
-                .map(|square| PixelObservation { square, ..pixel })
-                .into(),
-        });
-        let [.., last] = experience.pixels() else {
-            panic!("pixels are observed");
-        };
-        assert_eq!(experience.pixels().len(), 3);
-        assert_eq!((last.paths, last.square, last.rays), (2, 5.0, 10.0));
     }
 }

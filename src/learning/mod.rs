@@ -8,6 +8,7 @@
 //! - [`cell_tree`]: space, divided where there are many observations
 //! - [`experience`]: sums of observations, for each cell and each of six classes of normals
 //! - [`gathering`]: observations of tiles, in their order
+//! - [`observation`]: what is observed
 //! - [`pixels`]: how bright the image is
 //! - [`square_warp`]: a histogram that warps the unit square from which directions are drawn
 //! - [`knowledge`]: what is asked while paths are traced
@@ -16,12 +17,14 @@ pub mod cell_tree;
 pub mod experience;
 pub mod gathering;
 pub mod knowledge;
+pub mod observation;
 pub mod pixels;
 pub mod square_warp;
 
 pub use cell_tree::CellTree;
-pub use experience::{Experience, Observation, PixelObservation};
+pub use experience::Experience;
 pub use gathering::{Gathering, Observations};
 pub use knowledge::{Insight, Knowledge};
+pub use observation::{Observation, PixelObservation};
 pub use pixels::PixelKnowledge;
 pub use square_warp::{Bin, SquareWarp};

@@ -39,7 +39,7 @@ pub(super) struct CameraPaths<C: Colour> {
 
 /// Rays on their way to the next vertex.
 pub(super) struct Segments<C: Colour> {
-    /// The camera path that each descends from; nondecreasing.
+    /// The camera path that each descends from; those of a pixel stand side by side.
     pub path: Vec<u32>,
     /// Throughput, with the bsdf of the vertex that it left and the compensation for all decisions so far.
     pub throughput: Vec<C::Spectrum>,
@@ -72,7 +72,7 @@ pub(super) struct Receiver {
 pub(super) struct Vertices<C: Colour, V: Variant> {
     /// How often the paths have been scattered before.
     pub depth: u32,
-    /// The camera path that each descends from; nondecreasing.
+    /// The camera path that each descends from; those of a pixel stand side by side.
     pub path: Vec<u32>,
     /// Throughput on arrival.
     pub throughput: Vec<C::Spectrum>,

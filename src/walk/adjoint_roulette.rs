@@ -19,7 +19,7 @@
 //! **When it wins:** as `ears`; it looks at what paths are expected to bring alone, not at how much that varies, nor at what it costs.
 
 use super::learned::{BOUNDS, before_lessons, bound};
-use super::{Population, Rounding, Scalar, Scope, Strategy};
+use super::{Population, Strategy};
 
 /// The ratio of the window's ends.
 const WINDOW: f32 = 5.0;
@@ -40,18 +40,6 @@ impl Strategy for AdjointRoulette {
 
     fn settings(&self) -> Vec<(&'static str, String)> {
         Vec::new()
-    }
-
-    fn scope(&self) -> Scope {
-        Scope::Particle
-    }
-
-    fn rounding(&self) -> Rounding {
-        Rounding::Independent
-    }
-
-    fn scalar(&self) -> Scalar {
-        Scalar::Mean
     }
 
     fn learns(&self) -> bool {

@@ -21,7 +21,7 @@
 //! **When it wins:** where paths differ much in what they are worth, as under light that arrives indirectly.
 
 use super::learned::{before_lessons, bound};
-use super::{Objective, Population, Rounding, Scalar, Scope, Strategy};
+use super::{Objective, Population, Strategy};
 
 /// Makes variance times cost least for each path; see the [module](self).
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,18 +46,6 @@ impl Strategy for Ears {
 
     fn settings(&self) -> Vec<(&'static str, String)> {
         vec![("objective", self.objective.to_string())]
-    }
-
-    fn scope(&self) -> Scope {
-        Scope::Particle
-    }
-
-    fn rounding(&self) -> Rounding {
-        Rounding::Independent
-    }
-
-    fn scalar(&self) -> Scalar {
-        Scalar::Mean
     }
 
     fn learns(&self) -> bool {

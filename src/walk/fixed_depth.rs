@@ -14,7 +14,7 @@
 //! spends as much time on paths that carry almost nothing as on those that carry everything; and without a greatest
 //! depth it never ends in a closed room.
 
-use super::{Population, Rounding, Scalar, Scope, Strategy};
+use super::{Population, Strategy};
 
 /// Gives every particle one child; see the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -32,18 +32,6 @@ impl Strategy for FixedDepth {
 
     fn settings(&self) -> Vec<(&'static str, String)> {
         Vec::new()
-    }
-
-    fn scope(&self) -> Scope {
-        Scope::Particle
-    }
-
-    fn rounding(&self) -> Rounding {
-        Rounding::Independent
-    }
-
-    fn scalar(&self) -> Scalar {
-        Scalar::Mean
     }
 
     fn expected_counts(&self, _: &Population, nu: &mut [f32]) {

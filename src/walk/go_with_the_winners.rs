@@ -19,7 +19,7 @@
 //! it cannot see that another particle's children would have been better value.
 
 use super::particle_filter::check_n_max;
-use super::{Population, Rounding, Scalar, Scope, SettingError, Strategy};
+use super::{Population, SettingError, Strategy};
 
 /// Splits and ends particles one by one; see the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -50,18 +50,6 @@ impl Strategy for GoWithTheWinners {
 
     fn settings(&self) -> Vec<(&'static str, String)> {
         vec![("n-max", self.n_max.to_string())]
-    }
-
-    fn scope(&self) -> Scope {
-        Scope::Particle
-    }
-
-    fn rounding(&self) -> Rounding {
-        Rounding::Independent
-    }
-
-    fn scalar(&self) -> Scalar {
-        Scalar::Mean
     }
 
     fn expected_counts(&self, population: &Population, nu: &mut [f32]) {

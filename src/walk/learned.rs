@@ -1,12 +1,6 @@
 //! What a render has learned of its particles.
 
-use super::SettingError;
-use crate::walk::population::Population;
-
-use std::fmt::{self, Display};
-use std::str::FromStr;
-
-use serde::Serialize;
+use super::{Objective, Population, Roulette};
 
 /// The least and the largest number of children.
 pub(super) const BOUNDS: [f32; 2] = [0.02, 20.0];
@@ -16,8 +10,8 @@ const MOST_PER_PATH: f64 = 4.0;
 
 /// What was learned before about the particles of a [`Population`]: one entry per particle in every slice.
 ///
-/// The *value* of going on at a particle is what one child of it would bring back if the surface's albedo and the particle's throughput were
-/// 1. All of it comes from paths traced before: to a strategy these are numbers fixed in advance.
+/// The *value* of going on at a particle is what one child of it would bring back if neither the surface's albedo nor the particle's
+/// throughput took anything away. All of it comes from paths traced before: to a strategy these are numbers fixed in advance.
 #[derive(Clone, Copy, Debug)]
 pub struct Learned<'a> {
     /// The mean of the value, in radiance; not a number where nothing is known.
@@ -34,43 +28,6 @@ pub struct Learned<'a> {
     pub relative_factor: f32,
     /// The same with the variance itself.
     pub absolute_factor: f32,
-}
-
-/// Which error of the image is to become small.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Objective {
-    /// Relative to the brightness of each pixel.
-    #[default]
-    Relative,
-    /// As it is: bright pixels count most.
-    Mse,
-}
-
-impl Objective {
-    /// Every objective.
-    pub const ALL: [Self; 2] = [Self::Relative, Self::Mse];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Relative => "relative",
-            Self::Mse => "mse",
-        }
-    }
-}
-
-impl Display for Objective {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Objective {
-    type Err = SettingError;
-
-    fn from_str(text: &str) -> Result<Self, SettingError> {
-        SettingError::choose("objective", text, &Self::ALL)
-    }
 }
 
 impl Learned<'_> {
@@ -131,12 +88,12 @@ pub(super) fn bound(population: &Population, nu: &mut [f32]) {
     }
 }
 
-/// What a strategy asks of a particle of which nothing is known yet: one child for each that matters, every other one of those that hardly do.
+/// What a strategy asks of a particle of which nothing is known yet: the same as [`Roulette`].
 #[inline(always)]
 pub(super) fn before_lessons(population: &Population, index: usize) -> f32 {
-    if population.importance[index] * population.albedo[index] >= 0.1 {
+    if population.importance[index] * population.albedo[index] >= Roulette::DEFAULT_THRESHOLD {
         1.0
     } else {
-        0.5
+        1.0 - Roulette::DEFAULT_TERMINATION
     }
 }

@@ -47,9 +47,7 @@ use std::str::FromStr;
 use serde::Serialize;
 
 use super::learned::bound;
-use super::{
-    ExpectedCount, Objective, Population, Rounding, Scalar, Scope, SettingError, Strategy,
-};
+use super::{ExpectedCount, Objective, Population, Rounding, Scope, SettingError, Strategy};
 
 /// By what factor the range is wider in which particles are left alone.
 const DEAD_ZONE: f32 = 1.5;
@@ -195,10 +193,6 @@ impl Strategy for ParticleFilter {
 
     fn rounding(&self) -> Rounding {
         self.counts
-    }
-
-    fn scalar(&self) -> Scalar {
-        Scalar::Mean
     }
 
     fn learns(&self) -> bool {

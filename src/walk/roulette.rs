@@ -16,7 +16,7 @@
 //! **When it wins:** bright scenes where light takes many turns: it leaves a path alone for as long as it carries
 //! something, and never splits. Its weakness is the same: it follows a path of importance 0.11 like one of importance 1.
 
-use super::{Population, Rounding, Scalar, Scope, SettingError, Strategy};
+use super::{Population, SettingError, Strategy};
 
 /// Ends particles of little importance with a fixed probability; see the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -81,18 +81,6 @@ impl Strategy for Roulette {
             ("threshold", self.threshold.to_string()),
             ("termination", self.termination.to_string()),
         ]
-    }
-
-    fn scope(&self) -> Scope {
-        Scope::Particle
-    }
-
-    fn rounding(&self) -> Rounding {
-        Rounding::Independent
-    }
-
-    fn scalar(&self) -> Scalar {
-        Scalar::Mean
     }
 
     fn expected_counts(&self, population: &Population, nu: &mut [f32]) {

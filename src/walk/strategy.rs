@@ -21,13 +21,20 @@ pub trait Strategy: Send + Sync + Debug {
     fn settings(&self) -> Vec<(&'static str, String)>;
 
     /// Which particles round their counts together, and so have the same [`Population::group`].
-    fn scope(&self) -> Scope;
+    /// Unless it says otherwise, each decides alone.
+    fn scope(&self) -> Scope {
+        Scope::Particle
+    }
 
     /// How the counts are rounded to integers.
-    fn rounding(&self) -> Rounding;
+    fn rounding(&self) -> Rounding {
+        Rounding::Independent
+    }
 
     /// Which scalar of the spectral throughput and albedo the strategy wants as importance and albedo.
-    fn scalar(&self) -> Scalar;
+    fn scalar(&self) -> Scalar {
+        Scalar::Mean
+    }
 
     /// Whether it asks for what the render has [learned](Population::learned).
     fn learns(&self) -> bool {

@@ -22,7 +22,7 @@
 //! above sqrt(0.95) = 0.975 in a closed room, a path ends more often than it loses energy, the survivors' weights grow
 //! without bound, and the variance is infinite unless the render has a greatest depth.
 
-use super::{Population, Rounding, Scalar, Scope, Strategy};
+use super::{Population, Scalar, Strategy};
 
 /// No survival is more probable than this, so that every path ends.
 const MOST_PROBABLE: f32 = 0.95;
@@ -52,14 +52,6 @@ impl Strategy for ThroughputRoulette {
 
     fn settings(&self) -> Vec<(&'static str, String)> {
         vec![("from-depth", self.from_depth.to_string())]
-    }
-
-    fn scope(&self) -> Scope {
-        Scope::Particle
-    }
-
-    fn rounding(&self) -> Rounding {
-        Rounding::Independent
     }
 
     fn scalar(&self) -> Scalar {

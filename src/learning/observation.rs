@@ -1,0 +1,79 @@
+//! What is observed while paths are traced.
+
+use serde::{Deserialize, Serialize};
+
+use super::square_warp::Bin;
+
+/// What one path segment brought back to the vertex that it had left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// Where the vertex was (see [`Knowledge::address`](super::Knowledge::address)).
+    pub address: u32,
+    /// The direction of the segment, if it is one of those that are learned.
+    pub bin: Option<Bin>,
+    /// The radiance that came along it.
+    pub radiance: f32,
+    /// What it was worth: an estimate of the light that the vertex reflects, with albedo 1.
+    pub value: f32,
+    /// How many rays were traced for it, all descendants included.
+    pub cost: f32,
+}
+
+/// What the camera paths of one pixel brought back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PixelObservation {
+    /// Which pixel: row by row.
+    pub pixel: u32,
+    /// How many paths.
+    pub paths: u32,
+    /// The sum of their radiance.
+    pub radiance: f32,
+    /// The sum of the squares of their radiance.
+    pub square: f32,
+    /// The sum of their rays.
+    pub rays: f32,
+}
+
+impl PixelObservation {
+    /// The variance of the radiance of its paths; about `brightness`, where there is only one.
+    pub(super) fn variance(&self, brightness: f64) -> f64 {
+        let count = f64::from(self.paths);
+        let [mean, square] = [self.radiance, self.square].map(|sum| f64::from(sum) / count);
+        if self.paths > 1 {
+            ((square - mean * mean) * count / (count - 1.0)).max(0.0)
+        } else {
+            (mean - brightness).powi(2)
+        }
+    }
+
+    /// Adds what `other` paths of the same pixel brought; what is not finite is not observed.
+    pub(super) fn add(&mut self, other: &Self) {
+        if !(other.square >= 0.0 && other.square < f32::INFINITY) {
+            return;
+        }
+        self.paths += other.paths;
+        self.radiance += other.radiance;
+        self.square += other.square;
+        self.rays += other.rays;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_finite_is_not_observed() {
+        let mut pixel = PixelObservation::default();
+        for square in [1.0, f32::NAN, f32::INFINITY, 4.0] {
+            pixel.add(&PixelObservation {
+                pixel: 0,
+                paths: 1,
+                radiance: 1.0,
+                square,
+                rays: 5.0,
+            });
+        }
+        assert_eq!((pixel.paths, pixel.square, pixel.rays), (2, 5.0, 10.0));
+    }
+}
