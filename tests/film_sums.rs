@@ -41,8 +41,8 @@ fn sums_of_any_precision_are_the_same_but_for_rounding() {
             let pixels = film.pixels().zip(double.pixels());
             let deviations = pixels.flat_map(|(pixel, exact)| {
                 assert_eq!(
-                    (pixel.samples, pixel.squared_sizes),
-                    (exact.samples, exact.squared_sizes),
+                    (pixel.samples, pixel.units),
+                    (exact.samples, exact.units),
                     "{strategy}"
                 );
                 let (mean, exact) = (pixel.mean(), exact.mean());

@@ -4,39 +4,53 @@ use serde::{Deserialize, Serialize};
 
 use super::Accumulator;
 
-/// Sums over the samples of one pixel, in linear sRGB.
+/// What the samples of one pixel add up to, in linear sRGB.
 ///
-/// The samples arrive in *units* that know nothing of each other's noise: one camera path, or, where a strategy resamples
-/// several camera paths together, all samples that one population had in the pixel. The mean of all is that of the units, each
-/// weighted by its number of samples, and its variance is estimated from how far the units are from it. What their noise is
-/// need not be known, nor be the same: a render that learns may have better units later.
+/// The samples arrive in *units*, none of which has been influenced by the noise of another: one camera path, or, where a strategy
+/// resamples several camera paths together, all samples that one population had in the pixel. The mean of the pixel is that of the
+/// units, each weighted by its number of samples; its variance shows in how far each unit is from the mean of those before it.
+/// The noise of units need not be alike: a render that learns has better ones later.
 ///
 /// `A` are the numbers of the sums. All other arithmetic is in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PixelStatistics<A = f64> {
     /// Number of camera paths.
     pub samples: u64,
-    /// Sum over units of their number of samples squared: equal to `samples` where each is a unit, to its square where there is only one unit.
-    pub squared_sizes: u64,
+    /// Number of units.
+    pub units: u64,
     sum: [A; 3],
-    /// Sum over units of the sum of the unit times its number of samples.
-    sized_sum: [A; 3],
-    /// Sum over units of the squared sum of the unit.
-    squares: [A; 3],
+    /// The estimated variance of the sum.
+    variance: [A; 3],
 }
 
 impl<A: Accumulator> PixelStatistics<A> {
-    /// Adds a unit of `samples` camera paths whose values add up to `sum`.
+    /// Adds a unit of `samples` camera paths, at least 1, whose values add up to `sum`.
+    ///
+    /// With N samples of mean m and n new ones of mean x, (x - m)^2 is on average Var\[x\] + Var\[m\]. So the variance T of the sum grows
+    /// without bias to T + n^2 ((x - m)^2 - T / N^2), whatever the variances. For units of one size that is Welford's (1962) way to the usual
+    /// estimate. Of two units no more is known than their distance, and of a unit larger than all before it hardly more:
+    /// there T is n N (x - m)^2, as for samples of equal variance.
     #[inline]
     pub fn add_unit(&mut self, samples: u32, sum: [f64; 3]) {
-        let samples = u64::from(samples);
-        self.samples += samples;
-        self.squared_sizes = self.squared_sizes.saturating_add(samples * samples);
+        let [before, new] = [self.samples as f64, f64::from(samples)];
+        let is_large = self.units < 2 || new > before;
+        // Nothing is before the first unit: its weight is 0 and its distance finite.
+        let [per_before, per_new] = [1.0 / before.max(1.0), 1.0 / new];
+        let share = new * per_before;
+        let (kept, weight) = if is_large {
+            (0.0, new * before)
+        } else {
+            (1.0 - share * share, new * new)
+        };
         for (channel, value) in sum.into_iter().enumerate() {
+            let distance = value * per_new - self.sum[channel].total() * per_before;
+            let variance = kept * self.variance[channel].total() + weight * distance * distance;
+            self.variance[channel] = A::default();
+            self.variance[channel].add(variance);
             self.sum[channel].add(value);
-            self.sized_sum[channel].add(value * samples as f64);
-            self.squares[channel].add(value * value);
         }
+        self.samples += u64::from(samples);
+        self.units += 1;
     }
 
     /// The mean of the samples; black while there are none.
@@ -51,35 +65,18 @@ impl<A: Accumulator> PixelStatistics<A> {
     }
 
     /// The estimated variance of [`Self::mean`], or `None` with fewer than two units.
-    ///
-    /// With units of n samples and mean x, N samples and mean m in all: the sum of n^2 (x - m)^2 over N^2 - sum of n^2 (that of
-    /// White 1980 for samples of different variance, with the divisor that makes it exact where they have the same).
     pub fn variance_of_mean(&self) -> Option<[f64; 3]> {
-        let samples = self.samples as f64;
-        let squared_sizes = self.squared_sizes as f64;
-        let divisor = samples * samples - squared_sizes;
-        if divisor <= 0.0 {
-            return None;
-        }
-        let mut variance = [0.0; 3];
-        for (channel, value) in variance.iter_mut().enumerate() {
-            let mean = self.sum[channel].total() / samples;
-            let across = self.sized_sum[channel].total();
-            let squares = self.squares[channel].total();
-            let deviation = squares - mean * (2.0 * across - mean * squared_sizes);
-            *value = deviation.max(0.0) / divisor;
-        }
-        Some(variance)
+        let squared = (self.samples as f64).powi(2);
+        (self.units > 1).then(|| self.variance.map(|variance| variance.total() / squared))
     }
 
     /// The same with sums in double precision, into which those of any precision fit.
     pub fn in_double(&self) -> PixelStatistics {
         PixelStatistics {
             samples: self.samples,
-            squared_sizes: self.squared_sizes,
+            units: self.units,
             sum: self.sum.map(A::total),
-            sized_sum: self.sized_sum.map(A::total),
-            squares: self.squares.map(A::total),
+            variance: self.variance.map(A::total),
         }
     }
 }
@@ -127,12 +124,21 @@ mod tests {
         // Samples in the first five units have sixteen times the variance of those in the others.
         let want = (16.0 * 16.0 + 96.0) / 12.0 / (112.0 * 112.0);
         assert!((seen / want - 1.0).abs() < 0.06, "{}", seen / want);
-        // Of few units, with a divisor for equal noise: 1.13. With their deviations weighted by n instead of n^2 it would be 2.6.
-        assert!(
-            (1.05..1.2).contains(&(believed / want)),
-            "{}",
-            believed / want
-        );
+        assert!((believed / want - 1.0).abs() < 0.06, "{}", believed / want);
+    }
+
+    #[test]
+    fn of_units_of_one_size_it_is_the_usual_variance() {
+        let values = [3.0, 1.0, 4.0, 1.0, 5.0, 9.0, 2.0];
+        let mut pixel = PixelStatistics::<f64>::default();
+        values
+            .iter()
+            .for_each(|&value| pixel.add_unit(5, [5.0 * value; 3]));
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let usual = squares / (count - 1.0) / count;
+        assert!((pixel.variance_of_mean().unwrap()[2] / usual - 1.0).abs() < 1e-12);
     }
 
     #[test]

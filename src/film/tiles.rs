@@ -120,9 +120,7 @@ impl Film {
 
     /// The variance of the mean of every pixel, or `None` if one does not know it.
     pub fn variance(&self) -> Option<Image> {
-        let known = self
-            .pixels()
-            .all(|pixel| pixel.variance_of_mean().is_some());
+        let known = self.pixels().all(|pixel| pixel.units >= 2);
         known.then(|| {
             self.map(|pixel| {
                 pixel
