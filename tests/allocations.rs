@@ -97,6 +97,7 @@ fn job(pass: u32, knowledge: Option<&Knowledge>) -> TileJob<'_> {
         },
         first_sample: u64::from(pass) * 16,
         samples: 16,
+        weight: 1.0,
         knowledge,
         learns: false,
     }

@@ -61,6 +61,7 @@ pub fn record(scene: &Arc<Scene>, stretches: usize) -> Result<Vec<RaySet>, Box<d
             key,
             first_sample: 0,
             samples: SAMPLES,
+            weight: 1.0,
             knowledge: None,
             learns: false,
         };

@@ -75,6 +75,7 @@ impl BatchSize {
                     key,
                     first_sample: u64::from(pass * samples),
                     samples,
+                    weight: 1.0,
                     knowledge: None,
                     learns: false,
                 };

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// What the pixels of a tile know of the squares of their samples, row by row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SecondMoments {
-    /// Sums over the samples of X^2, Y^2 and Z^2 (CIE).
+    /// Weighted sums over the samples of X^2, Y^2 and Z^2 (CIE).
     sums: Vec<[f64; 3]>,
 }
 
@@ -22,7 +22,7 @@ impl SecondMoments {
         self.sums.len()
     }
 
-    /// Adds a sample of the colour `xyz` (CIE) to the pixel `index`, with the `weight` that the reconstruction filter gives it.
+    /// Adds a sample of the colour `xyz` (CIE) to the pixel `index`, with a `weight`.
     ///
     /// # Panics
     /// If there are not so many pixels.
@@ -33,11 +33,11 @@ impl SecondMoments {
         }
     }
 
-    /// The means of the squares in the pixel `index`, which has so many `samples`; 0 while there are none.
+    /// The weighted means of the squares in the pixel `index`, whose samples together have that `weight`; 0 while there are none.
     ///
     /// # Panics
     /// If there are not so many pixels.
-    pub fn mean(&self, index: usize, samples: u64) -> [f64; 3] {
-        self.sums[index].map(|sum| sum / samples.max(1) as f64)
+    pub fn mean(&self, index: usize, weight: f64) -> [f64; 3] {
+        self.sums[index].map(|sum| if weight > 0.0 { sum / weight } else { 0.0 })
     }
 }

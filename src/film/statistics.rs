@@ -18,55 +18,60 @@ pub struct PixelStatistics<A = f64> {
     pub samples: u64,
     /// Number of units.
     pub units: u64,
+    /// The weight of all samples together.
+    pub weight: f64,
+    /// The weighted sum.
     sum: [A; 3],
-    /// The estimated variance of the sum.
+    /// The estimated variance of the weighted sum.
     variance: [A; 3],
 }
 
 impl<A: Accumulator> PixelStatistics<A> {
-    /// Adds a unit of `samples` camera paths, at least 1, whose values add up to `sum`.
+    /// Adds a unit of `samples` camera paths, at least 1, each of `weight` (positive), whose values add up to `sum`.
     ///
-    /// With N samples of mean m and n new ones of mean x, (x - m)^2 is on average Var\[x\] + Var\[m\]. So the variance T of the sum grows
-    /// without bias to T + n^2 ((x - m)^2 - T / N^2), whatever the variances. For units of one size that is Welford's (1962) way to the usual
-    /// estimate. Of two units no more is known than their distance, and of a unit larger than all before it hardly more:
-    /// there T is n N (x - m)^2, as for samples of equal variance.
+    /// With samples of the weight W and the mean m, and new ones of the weight w and the mean x, (x - m)^2 is on average Var\[x\] + Var\[m\].
+    /// So the variance T of the weighted sum grows without bias to T + w^2 ((x - m)^2 - T / W^2), whatever the variances. For units of one size
+    /// that is Welford's (1962) way to the usual estimate. Of two units no more is known than their distance, and of one that weighs more than all before it
+    /// hardly more: there T is w W (x - m)^2, as for samples of equal variance.
     #[inline]
-    pub fn add_unit(&mut self, samples: u32, sum: [f64; 3]) {
-        let [before, new] = [self.samples as f64, f64::from(samples)];
+    pub fn add_unit(&mut self, samples: u32, weight: f64, sum: [f64; 3]) {
+        let [before, new] = [self.weight, weight * f64::from(samples)];
         let is_large = self.units < 2 || new > before;
-        // Nothing is before the first unit: its weight is 0 and its distance finite.
-        let [per_before, per_new] = [1.0 / before.max(1.0), 1.0 / new];
+        // Nothing is before the first unit: its distance is finite, and does not count.
+        let per_before = if before > 0.0 { 1.0 / before } else { 0.0 };
         let share = new * per_before;
-        let (kept, weight) = if is_large {
+        let (kept, counts) = if is_large {
             (0.0, new * before)
         } else {
             (1.0 - share * share, new * new)
         };
+        let per_sample = 1.0 / f64::from(samples);
         for (channel, value) in sum.into_iter().enumerate() {
-            let distance = value * per_new - self.sum[channel].total() * per_before;
-            let variance = kept * self.variance[channel].total() + weight * distance * distance;
+            let distance = value * per_sample - self.sum[channel].total() * per_before;
+            let variance = kept * self.variance[channel].total() + counts * distance * distance;
             self.variance[channel] = A::default();
             self.variance[channel].add(variance);
-            self.sum[channel].add(value);
+            self.sum[channel].add(weight * value);
         }
+        self.weight += new;
         self.samples += u64::from(samples);
         self.units += 1;
     }
 
-    /// The mean of the samples; black while there are none.
+    /// The weighted mean of the samples; black while there are none.
     pub fn mean(&self) -> [f64; 3] {
         self.sum.map(|sum| {
             if self.samples == 0 {
                 0.0
             } else {
-                sum.total() / self.samples as f64
+                sum.total() / self.weight
             }
         })
     }
 
     /// The estimated variance of [`Self::mean`], or `None` with fewer than two units.
     pub fn variance_of_mean(&self) -> Option<[f64; 3]> {
-        let squared = (self.samples as f64).powi(2);
+        let squared = self.weight * self.weight;
         (self.units > 1).then(|| self.variance.map(|variance| variance.total() / squared))
     }
 
@@ -75,6 +80,7 @@ impl<A: Accumulator> PixelStatistics<A> {
         PixelStatistics {
             samples: self.samples,
             units: self.units,
+            weight: self.weight,
             sum: self.sum.map(A::total),
             variance: self.variance.map(A::total),
         }
@@ -100,7 +106,7 @@ mod tests {
             let mut pixel = PixelStatistics::<f64>::default();
             for (unit, &samples) in units.iter().enumerate() {
                 let sample = |_| 0.5 + noise(unit) * (random.uniform_f64() - 0.5);
-                pixel.add_unit(samples, [(0..samples).map(sample).sum(); 3]);
+                pixel.add_unit(samples, 1.0, [(0..samples).map(sample).sum(); 3]);
             }
             assert_eq!(pixel.samples, u64::from(units.iter().sum::<u32>()));
             seen += (pixel.mean()[1] - 0.5).powi(2) / f64::from(pixels);
@@ -133,7 +139,7 @@ mod tests {
         let mut pixel = PixelStatistics::<f64>::default();
         values
             .iter()
-            .for_each(|&value| pixel.add_unit(5, [5.0 * value; 3]));
+            .for_each(|&value| pixel.add_unit(5, 1.0, [5.0 * value; 3]));
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
         let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
@@ -142,11 +148,24 @@ mod tests {
     }
 
     #[test]
+    fn samples_of_less_weight_count_less() {
+        let mut pixel = PixelStatistics::<f64>::default();
+        pixel.add_unit(2, 0.5, [2.0 * 3.0; 3]);
+        pixel.add_unit(3, 1.0, [3.0 * 7.0; 3]);
+        assert_eq!((pixel.samples, pixel.weight), (5, 4.0));
+        assert_eq!(pixel.mean(), [(3.0 + 3.0 * 7.0) / 4.0; 3]);
+        // With samples of the variance V, V (2 / 4 + 3) / 16 is that of the mean, and V (1 / 2 + 1 / 3) that of the distance 4 of two units; but weights say
+        // that the former have twice that variance: then it is (1 + 3) / 16 and 1 + 1 / 3.
+        let variance = 16.0 / (4.0 / 3.0) * 4.0 / 16.0;
+        assert_eq!(pixel.variance_of_mean(), Some([variance; 3]));
+    }
+
+    #[test]
     fn without_samples_there_is_no_variance() {
         let mut pixel = PixelStatistics::<f64>::default();
         assert_eq!(pixel.mean(), [0.0; 3]);
         assert_eq!(pixel.variance_of_mean(), None);
-        pixel.add_unit(4, [4.0; 3]);
+        pixel.add_unit(4, 1.0, [4.0; 3]);
         assert_eq!((pixel.mean(), pixel.variance_of_mean()), ([1.0; 3], None));
     }
 }

@@ -138,7 +138,7 @@ impl Film {
             let moments = tile.second_moments.as_ref()?;
             for (index, pixel) in tile.pixels.iter().enumerate() {
                 let (x, y) = tile.position(index);
-                let mean = moments.mean(index, pixel.samples);
+                let mean = moments.mean(index, pixel.weight);
                 *image.pixel_mut(x, y) = mean.map(|value| value as f32);
             }
         }
@@ -207,7 +207,7 @@ mod tests {
         for tile in film.tiles_mut() {
             for index in 0..tile.pixels.count() {
                 let (x, y) = tile.position(index);
-                doubles(tile)[index].add_unit(1, [f64::from(x), f64::from(y), 1.0]);
+                doubles(tile)[index].add_unit(1, 1.0, [f64::from(x), f64::from(y), 1.0]);
             }
         }
         let image = film.image();
@@ -218,7 +218,7 @@ mod tests {
         }
         assert!(film.pixels().all(|pixel| pixel.samples == 1));
         assert_eq!((film.variance(), film.unequal_samples()), (None, None));
-        doubles(&mut film.tiles_mut()[0])[1].add_unit(2, [0.0; 3]);
+        doubles(&mut film.tiles_mut()[0])[1].add_unit(2, 1.0, [0.0; 3]);
         assert_eq!(film.unequal_samples().unwrap()[..3], [1, 3, 1]);
     }
 
@@ -248,7 +248,7 @@ mod tests {
         assert_eq!(film.second_moments(), None);
         film = film.with_second_moments();
         let tile = &mut film.tiles_mut()[1];
-        doubles(tile)[2].add_unit(4, [0.0; 3]);
+        doubles(tile)[2].add_unit(4, 1.0, [0.0; 3]);
         let moments = tile.second_moments.as_mut().unwrap();
         moments.add(2, [1.0, 2.0, -3.0], 1.0);
         moments.add(2, [0.0, 2.0, 1.0], -0.5);

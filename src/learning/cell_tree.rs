@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 const FINEST: u32 = 21;
 
 /// Halvings along each axis that the table of first nodes takes at once.
-const TABLE_BITS: u32 = 4;
+const TABLE_BITS: u32 = 5;
 
 /// A binary tree over a cube. A node is halved along x, y and z in turn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -11,16 +11,19 @@ use crate::scene::ImageSize;
 const FIRST_HALVINGS: u32 = 3;
 
 /// What is known of the light that arrives in a cell at surfaces that face one way.
+///
+/// What is asked for together lies in one line of the cache.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[repr(C, align(32))]
 pub struct Insight {
-    /// From where, on the square that directions are drawn from.
-    pub warp: SquareWarp,
     /// The mean of what a path that goes on there brings back, for albedo 1.
     pub mean: f32,
     /// The mean of its square.
     pub square: f32,
     /// How many rays such a path takes.
     pub cost: f32,
+    /// From where, on the square that directions are drawn from.
+    pub warp: SquareWarp,
 }
 
 /// What was learned; it changes between passes only.

@@ -16,11 +16,11 @@ const TRUST: f32 = 0.7;
 /// alone, so does the noise.
 const HALF_KNOWN: f32 = 4.0;
 
-/// The largest number below 1.
-const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+/// What the heights of a distribution add up to.
+const WHOLE: u32 = 1 << 16;
 
 /// A part of the unit square: row and column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bin(u8);
 
 impl Bin {
@@ -41,19 +41,26 @@ impl Bin {
 #[inline(always)]
 fn index(u: f32) -> usize {
     // Conversion saturates: what is no number, or below 0, is in the first.
-    ((u * SIDE as f32) as usize).min(SIDE - 1)
+    ((u * SIDE as f32) as i32).clamp(0, SIDE as i32 - 1) as usize
 }
 
 /// A density over the unit square, constant in each [`Bin`].
+///
+/// Its numbers are as small as they can be, for every vertex looks at those of another place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[repr(align(16))]
 pub struct SquareWarp {
-    /// Cumulative over rows; the last is [`SIDE`].
-    rows: [f32; SIDE],
-    /// Cumulative within each row; the last is [`SIDE`].
-    columns: [[f32; SIDE]; SIDE],
+    rows: Steps,
+    columns: [Steps; SIDE],
 }
 
 impl SquareWarp {
+    /// The same density everywhere.
+    pub const UNIFORM: Self = Self {
+        rows: Steps::EVEN,
+        columns: [Steps::EVEN; SIDE],
+    };
+
     /// The density that is in proportion to `values`, not negative, but for its uniform part: the smaller, the more `observations` of
     /// all bins together the values come from.
     pub fn new(values: &[[f32; SIDE]; SIDE], observations: f32) -> Self {
@@ -62,75 +69,90 @@ impl SquareWarp {
         let mean = values.iter().flatten().sum::<f32>() / bins;
         let scale = trust / mean;
         // Sums of bright light can be infinite, and where all is dark their reciprocal is.
-        let density = if mean < f32::INFINITY && scale < f32::INFINITY {
-            values.map(|row| row.map(|value| 1.0 - trust + scale * value))
-        } else {
-            [[1.0; SIDE]; SIDE]
-        };
-        let sums = density.map(|row| row.iter().sum::<f32>());
+        if !(mean < f32::INFINITY && scale < f32::INFINITY) {
+            return Self::UNIFORM;
+        }
+        let density = values.map(|row| row.map(|value| 1.0 - trust + scale * value));
         Self {
-            rows: cumulative(&sums),
-            columns: density.map(|row| cumulative(&row)),
+            rows: Steps::new(&density.map(|row| row.iter().sum::<f32>())),
+            columns: density.map(|row| Steps::new(&row)),
         }
     }
 
     /// Where the point (u, v) of [0, 1)^2 goes, and the density there.
     #[inline(always)]
     pub fn warp(&self, [u, v]: [f32; 2]) -> ([f32; 2], f32) {
-        let (row, u, rows) = step(&self.rows, u);
-        let (_, v, columns) = step(&self.columns[row], v);
-        ([u, v], rows * columns)
+        let (row, u) = self.rows.invert(u);
+        let (column, v) = self.columns[row].invert(v);
+        ([u, v], self.product(row, column))
     }
 
     /// The density in a bin: its mean over all is 1.
     #[inline(always)]
     pub fn density(&self, bin: Bin) -> f32 {
         let [row, column] = bin.place();
-        height(&self.rows, row) * height(&self.columns[row], column)
+        self.product(row, column)
+    }
+
+    #[inline(always)]
+    fn product(&self, row: usize, column: usize) -> f32 {
+        const EVEN: f32 = (WHOLE / SIDE as u32) as f32;
+        let heights = self.rows.height(row) * self.columns[row].height(column);
+        heights * (1.0 / (EVEN * EVEN))
     }
 }
 
-/// The sums of all up to each, scaled so that the last is [`SIDE`].
-fn cumulative(values: &[f32; SIDE]) -> [f32; SIDE] {
-    let scale = SIDE as f32 / values.iter().sum::<f32>();
-    let mut sum = 0.0;
-    let mut sums = values.map(|value| {
-        sum += value * scale;
-        sum
-    });
-    sums[SIDE - 1] = SIDE as f32;
-    sums
-}
+/// A distribution over [0, 1), constant over each of [`SIDE`] equal parts: the sum of all parts before each, of [`WHOLE`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Steps([u16; SIDE]);
 
-#[inline(always)]
-fn height(cumulative: &[f32; SIDE], index: usize) -> f32 {
-    let before = if index > 0 {
-        cumulative[index - 1]
-    } else {
-        0.0
+impl Steps {
+    const EVEN: Self = {
+        let mut before = [0; SIDE];
+        let mut part = 0;
+        while part < SIDE {
+            before[part] = (part * WHOLE as usize / SIDE) as u16;
+            part += 1;
+        }
+        Self(before)
     };
-    cumulative[index] - before
-}
 
-/// The step of the distribution that u falls on, where in [0, 1) the inverse of the distribution is there, and how high the step is.
-#[inline(always)]
-fn step(cumulative: &[f32; SIDE], u: f32) -> (usize, f32, f32) {
-    let target = u * SIDE as f32;
-    let index = cumulative[..SIDE - 1]
-        .iter()
-        .map(|&sum| usize::from(sum <= target))
-        .sum::<usize>();
-    let before = if index > 0 {
-        cumulative[index - 1]
-    } else {
-        0.0
-    };
-    let height = cumulative[index] - before;
-    let inside = ((target - before) / height).clamp(0.0, BELOW_ONE);
-    let warped = (index as f32 + inside) * (1.0 / SIDE as f32);
-    // Rounding must not carry it into the next bin.
-    let end = ((index + 1) as f32 * (1.0 / SIDE as f32)).next_down();
-    (index, warped.min(end), height)
+    /// In proportion to `values`, none of which is less than a thousandth of their sum.
+    fn new(values: &[f32; SIDE]) -> Self {
+        let scale = WHOLE as f32 / values.iter().sum::<f32>();
+        let mut sum = 0.0;
+        Self(values.map(|value| {
+            let before = sum * scale;
+            sum += value;
+            before.round() as u16
+        }))
+    }
+
+    #[inline(always)]
+    fn height(&self, part: usize) -> f32 {
+        let end = self.0.get(part + 1).map_or(WHOLE, |&end| u32::from(end));
+        (end - u32::from(self.0[part])) as f32
+    }
+
+    /// The part on which the inverse of the distribution is at `u`, and where in [0, 1).
+    #[inline(always)]
+    fn invert(&self, u: f32) -> (usize, f32) {
+        let target = u * WHOLE as f32;
+        // Conversion saturates.
+        let whole = target as u16;
+        let begun: u16 = self
+            .0
+            .iter()
+            .map(|&before| u16::from(before <= whole))
+            .sum();
+        // Nothing is before the first.
+        let part = usize::from(begun - 1) % SIDE;
+        let inside = (target - f32::from(self.0[part])) / self.height(part);
+        let place = (part as f32 + inside) * (1.0 / SIDE as f32);
+        // Rounding must not carry it into the next part.
+        let end = ((part + 1) as f32 * (1.0 / SIDE as f32)).next_down();
+        (part, place.clamp(0.0, end))
+    }
 }
 
 #[cfg(test)]

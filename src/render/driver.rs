@@ -225,7 +225,8 @@ impl Render {
                     break Ended::Complete;
                 }
                 let learns = state.knowledge.is_some() && schedule.teaches(state.pass.before);
-                self.trace_pass(state, learns, &watch);
+                let weight = schedule.weight(state.pass.before);
+                self.trace_pass(state, learns, weight, &watch);
                 if state.pass.finish()
                     && learns
                     && let Some(knowledge) = &mut state.knowledge
@@ -247,7 +248,7 @@ impl Render {
 
     /// Traces what is left of a pass. Passes follow each other, so that every pixel adds up its passes in the same
     /// order. Where the render `learns` from it, tiles are begun in their order, so that few wait for those before them.
-    fn trace_pass(&self, state: &mut RenderState, learns: bool, watch: &Watch) {
+    fn trace_pass(&self, state: &mut RenderState, learns: bool, weight: f64, watch: &Watch) {
         let pass = &mut state.pass;
         let first = pass.done.iter().position(|done| !done).unwrap_or(0);
         let experience = match &mut state.knowledge {
@@ -277,6 +278,7 @@ impl Render {
                     key,
                     first_sample: pass.before,
                     samples: pass.samples,
+                    weight,
                     knowledge,
                     learns,
                 };

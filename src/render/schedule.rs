@@ -13,6 +13,9 @@ const LESSONS: [u32; 2] = [32, 8];
 /// With so many camera paths, an image of many pixels has learned enough.
 const TEACHING_PATHS: usize = 1 << 21;
 
+/// The weight of a sample of which others learn, for it has not learned enough itself.
+const LESSON_WEIGHT: f64 = 0.5;
+
 /// The most samples per pixel of a pass that grows.
 const LARGEST_PASS: u32 = 256;
 
@@ -59,6 +62,12 @@ impl Schedule {
             0 => 1,
             _ => 1 << (pass - 1).min(31),
         };
+        // The last is to weigh no more than all before it, even if all those are lessons.
+        let most = if self.learns && !self.teaches(before) && before > 1 {
+            most.min(u32::try_from(before / 2).unwrap_or(u32::MAX))
+        } else {
+            most
+        };
         full.min(most)
             .min(missing(self.budget, before))
             .min(missing(until, before))
@@ -68,6 +77,15 @@ impl Schedule {
     /// number, and never from more than [`LESSONS`] and [`TEACHING_PATHS`] allow.
     pub fn teaches(&self, before: u64) -> bool {
         before < u64::from(self.lessons())
+    }
+
+    /// The weight of every sample of a pass before which every pixel has had so many samples. It depends on the pass alone, so images stay unbiased.
+    pub fn weight(&self, before: u64) -> f64 {
+        if self.learns && self.teaches(before) {
+            LESSON_WEIGHT
+        } else {
+            1.0
+        }
     }
 
     fn lessons(&self) -> u32 {
@@ -167,7 +185,8 @@ mod tests {
                 samples
             })
             .collect();
-        assert_eq!(passes, [1, 1, 2, 4, 8, 16, 16, 2]);
+        assert_eq!(passes, [1, 1, 2, 4, 8, 8, 12, 14]);
+        assert_eq!([8, 16].map(|before| schedule.weight(before)), [0.5, 1.0]);
     }
 
     #[test]

@@ -54,7 +54,7 @@ impl Synthetic {
             let mut pixel = PixelStatistics::<f64>::default();
             for _ in 0..units {
                 let factor = estimator.factor(random);
-                pixel.add_unit(1, truth(x, y).map(|t| t * factor));
+                pixel.add_unit(1, 1.0, truth(x, y).map(|t| t * factor));
             }
             *image.pixel_mut(x, y) = pixel.mean().map(|v| v as f32);
             *variance.pixel_mut(x, y) = pixel.variance_of_mean().unwrap().map(|v| v as f32);

@@ -45,6 +45,8 @@ pub struct TileJob<'k> {
     pub first_sample: u64,
     /// Camera paths per pixel, positive.
     pub samples: u32,
+    /// The weight of each of them in its pixel, positive.
+    pub weight: f64,
     /// What was learned before, of a render that learns.
     pub knowledge: Option<&'k Knowledge>,
     /// Whether what is traced is to be learned from.

@@ -9,14 +9,15 @@ use glam::Vec3;
 
 use super::variant::Scattering;
 use crate::lanes::{CHUNK, VectorLanes};
-use crate::learning::{Bin, Insight, Knowledge};
+use crate::learning::{Bin, Knowledge, SquareWarp};
 use crate::sampling::warp;
 use crate::scene::{BsdfSamples, BsdfValues};
 use crate::spectrum::SpectrumArithmetic;
 
 /// What is known in each lane.
 pub(super) struct Guidance<'k> {
-    insights: [Option<&'k Insight>; CHUNK],
+    warps: [&'k SquareWarp; CHUNK],
+    is_known: [bool; CHUNK],
     /// The density of the point to which each was warped.
     density: [f32; CHUNK],
     /// Which lanes draw from the warped square though it is mixed with lobes.
@@ -27,7 +28,8 @@ impl<'k> Guidance<'k> {
     /// Nothing is known.
     pub fn new() -> Self {
         Self {
-            insights: [None; CHUNK],
+            warps: [&SquareWarp::UNIFORM; CHUNK],
+            is_known: [false; CHUNK],
             density: [1.0; CHUNK],
             is_redirected: [false; CHUNK],
         }
@@ -36,8 +38,22 @@ impl<'k> Guidance<'k> {
     /// Asks for what is known at the `addresses` of at most [`CHUNK`] vertices.
     #[inline(always)]
     pub fn ask(&mut self, knowledge: &'k Knowledge, addresses: impl Iterator<Item = u32>) {
-        for (insight, address) in self.insights.iter_mut().zip(addresses) {
-            *insight = knowledge.insight(address);
+        for (lane, address) in (0..CHUNK).zip(addresses) {
+            let insight = knowledge.insight(address);
+            self.is_known[lane] = insight.is_some();
+            self.warps[lane] = insight.map_or(&SquareWarp::UNIFORM, |insight| &insight.warp);
+        }
+    }
+
+    /// The share of directions that a vertex draws from the square.
+    #[inline(always)]
+    fn share<S: SpectrumArithmetic, V: Scattering<S>>(&self, lane: usize, vertex: &V) -> f32 {
+        let share = vertex.guided_share();
+        // What is not known is not mixed with anything; all from the even square is the same as none.
+        if self.is_known[lane] || share >= 1.0 {
+            share
+        } else {
+            0.0
         }
     }
 
@@ -50,14 +66,10 @@ impl<'k> Guidance<'k> {
         directions: &VectorLanes<CHUNK>,
         values: &mut BsdfValues<S>,
     ) {
-        for (lane, vertex) in vertices.iter().enumerate() {
-            if let Some(insight) = self.insights[lane] {
-                let share = vertex.guided_share();
-                let local = vertex
-                    .frame(normals.get(lane))
-                    .to_local(directions.get(lane));
-                values.pdf[lane] = mixed_pdf(share, guided_pdf(insight, local), values.pdf[lane]);
-            }
+        let places = SquarePlaces::of(vertices.iter(), normals, directions);
+        for (lane, vertex) in (0..CHUNK).zip(vertices) {
+            let guided = guided_pdf(self.warps[lane], places.bins[lane], places.cosines[lane]);
+            values.pdf[lane] = mixed_pdf(self.share(lane, vertex), guided, values.pdf[lane]);
         }
     }
 
@@ -68,17 +80,14 @@ impl<'k> Guidance<'k> {
         vertices: impl Iterator<Item = &'a V>,
         numbers: &mut [[f32; CHUNK]; 3],
     ) {
-        for (lane, vertex) in vertices.enumerate() {
-            let Some(insight) = self.insights[lane] else {
-                continue;
-            };
-            let share = vertex.guided_share();
+        for (lane, vertex) in (0..CHUNK).zip(vertices) {
+            let share = self.share(lane, vertex);
             let [u, v, choice] = numbers.each_mut().map(|numbers| &mut numbers[lane]);
             // Where it is mixed, one number decides who draws, and what is left of it chooses the lobe.
             let is_drawn_from_square = share >= 1.0 || *choice < share;
             self.is_redirected[lane] = is_drawn_from_square && share < 1.0;
             if is_drawn_from_square {
-                let (point, density) = insight.warp.warp([*u, *v]);
+                let (point, density) = self.warps[lane].warp([*u, *v]);
                 [*u, *v] = point;
                 self.density[lane] = density;
             } else {
@@ -96,11 +105,8 @@ impl<'k> Guidance<'k> {
         numbers: &[[f32; CHUNK]; 3],
         samples: &mut BsdfSamples<S>,
     ) {
-        for (lane, vertex) in vertices.enumerate() {
-            let Some(insight) = self.insights[lane] else {
-                continue;
-            };
-            let share = vertex.guided_share();
+        for (lane, vertex) in (0..CHUNK).zip(vertices) {
+            let share = self.share(lane, vertex);
             if share >= 1.0 {
                 samples.pdf[lane] *= self.density[lane];
                 samples.weight[lane] *= 1.0 / self.density[lane];
@@ -118,9 +124,9 @@ impl<'k> Guidance<'k> {
                     samples.weight[lane] *= 1.0 / (1.0 - share);
                     continue;
                 }
-                let direction = samples.direction.get(lane);
-                let local = vertex.frame(normals.get(lane)).to_local(direction);
-                let mixed = mixed_pdf(share, guided_pdf(insight, local), pdf);
+                let (bin, cosine) = place(vertex, normals.get(lane), samples.direction.get(lane));
+                let guided = guided_pdf(self.warps[lane], bin, cosine);
+                let mixed = mixed_pdf(share, guided, pdf);
                 let is_drawn = pdf > 0.0 && mixed > 0.0;
                 samples.weight[lane] *= if is_drawn { pdf / mixed } else { 0.0 };
                 samples.pdf[lane] = mixed;
@@ -129,19 +135,63 @@ impl<'k> Guidance<'k> {
     }
 }
 
-/// The density over solid angle with which the warped square gives `local`, a unit direction in the frame of the vertex.
-#[inline(always)]
-fn guided_pdf(insight: &Insight, local: Vec3) -> f32 {
-    match bin(local) {
-        Some(bin) => insight.warp.density(bin) * local.z * FRAC_1_PI,
-        None => 0.0,
+/// Where on the square directions are, for each lane.
+pub(super) struct SquarePlaces {
+    /// What part of the square gives the direction; it means nothing below the surface.
+    bins: [Bin; CHUNK],
+    /// The cosine of the angle to the normal; not positive below the surface.
+    cosines: [f32; CHUNK],
+}
+
+impl Default for SquarePlaces {
+    fn default() -> Self {
+        Self {
+            bins: [Bin::default(); CHUNK],
+            cosines: [0.0; CHUNK],
+        }
     }
 }
 
-/// The part of the square that gives `local`, a unit direction in the frame of a vertex; nothing gives those below the surface.
+impl SquarePlaces {
+    /// Those of `directions`, unit and in world space, seen from at most [`CHUNK`] `vertices`.
+    #[inline(always)]
+    pub fn of<'a, S: SpectrumArithmetic, V: Scattering<S>>(
+        vertices: impl Iterator<Item = &'a V>,
+        normals: &VectorLanes<CHUNK>,
+        directions: &VectorLanes<CHUNK>,
+    ) -> Self {
+        let mut places = Self::default();
+        for (lane, vertex) in (0..CHUNK).zip(vertices) {
+            let (bin, cosine) = place(vertex, normals.get(lane), directions.get(lane));
+            places.bins[lane] = bin;
+            places.cosines[lane] = cosine;
+        }
+        places
+    }
+
+    /// The part of the square that gives the direction in a lane; nothing gives those below the surface.
+    #[inline(always)]
+    pub fn bin(&self, lane: usize) -> Option<Bin> {
+        (self.cosines[lane] > 0.0).then_some(self.bins[lane])
+    }
+}
+
+/// What part of the square gives `direction`, unit and in world space, at a vertex with that shading normal; and the cosine between the two, not positive
+/// below the surface, where the part means nothing.
 #[inline(always)]
-pub(super) fn bin(local: Vec3) -> Option<Bin> {
-    (local.z > 0.0).then(|| Bin::of(warp::cosine_hemisphere_inverse(local)))
+fn place<S: SpectrumArithmetic, V: Scattering<S>>(
+    vertex: &V,
+    normal: Vec3,
+    direction: Vec3,
+) -> (Bin, f32) {
+    let local = vertex.frame(normal).to_local(direction);
+    (Bin::of(warp::cosine_hemisphere_inverse(local)), local.z)
+}
+
+/// The density over solid angle with which the warped square gives a direction in `bin`, `cosine` from the normal.
+#[inline(always)]
+fn guided_pdf(warp: &SquareWarp, bin: Bin, cosine: f32) -> f32 {
+    warp.density(bin) * cosine.max(0.0) * FRAC_1_PI
 }
 
 /// The density of a mixture with that `share` of guided directions.

@@ -105,7 +105,13 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             self.lineage.conclude(&self.paths);
             stopwatch.lap(Stage::Learn, &mut self.statistics.stages);
         }
-        splat::expose(engine, &self.paths, tile, &mut self.statistics.dropped);
+        splat::expose(
+            engine,
+            job.weight,
+            &self.paths,
+            tile,
+            &mut self.statistics.dropped,
+        );
         stopwatch.lap(Stage::Splat, &mut self.statistics.stages);
         self.statistics.camera_paths += self.paths.radiance.len() as u64;
     }

@@ -41,6 +41,7 @@ mod tests {
             key,
             first_sample: 0,
             samples: 4,
+            weight: 1.0,
             knowledge: None,
             learns: false,
         };

@@ -4,7 +4,7 @@ use multiversion::multiversion;
 
 use super::batch::{CameraPaths, Segments, Vertices};
 use super::engine::Engine;
-use super::guidance::{self, Guidance};
+use super::guidance::{Guidance, SquarePlaces};
 use super::lineage::Birth;
 use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant};
@@ -44,7 +44,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     let mut origins = VectorLanes::default();
     let mut clearances = [0.0; CHUNK];
     let mut guidance = Guidance::new();
-    let mut bins = [None; CHUNK];
+    let mut places = SquarePlaces::default();
     let learns = !vertices.segment.is_empty();
     for children in children.chunks(CHUNK) {
         for (lane, child) in children.iter().enumerate() {
@@ -78,13 +78,10 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         }
         V::Scattering::sample(bsdfs.clone(), &normals, &numbers, &mut samples);
         if knowledge.is_some() {
-            guidance.redirect(bsdfs, &normals, &numbers, &mut samples);
+            guidance.redirect(bsdfs.clone(), &normals, &numbers, &mut samples);
         }
         if learns {
-            for (bin, (lane, parent)) in bins.iter_mut().zip(parents.clone().enumerate()) {
-                let frame = vertices.bsdf[parent].frame(normals.get(lane));
-                *bin = guidance::bin(frame.to_local(samples.direction.get(lane)));
-            }
+            places = SquarePlaces::of(bsdfs, &normals, &samples.direction);
         }
         for (lane, parent) in parents.clone().enumerate() {
             normals.put(lane, vertices.geometric_normal.get(parent));
@@ -134,7 +131,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
                 Birth {
                     parent: vertices.segment[parent],
                     address: vertices.address[parent],
-                    bin: bins[lane],
+                    bin: places.bin(lane),
                     per_radiance: 1.0 / throughputs[lane].mean(),
                     per_value: expected / reflected.mean(),
                 }

@@ -10,9 +10,10 @@ use crate::sampling::SamplerKind;
 use crate::spectrum::{Colour, SpectrumArithmetic, xyz_from_srgb};
 use crate::walk::Scope;
 
-/// Adds every path to its pixel of the tile; those that carry no radiance count as black there, and in `dropped`.
+/// Adds every path to its pixel of the tile, with the same `weight`; those that carry no radiance count as black there, and in `dropped`.
 pub(super) fn expose<C: Colour>(
     engine: &Engine,
+    weight: f64,
     paths: &CameraPaths<C>,
     tile: &mut FilmTile,
     dropped: &mut DroppedSamples,
@@ -21,22 +22,22 @@ pub(super) fn expose<C: Colour>(
     let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile)
         || engine.settings.sampler != SamplerKind::Independent;
     match &mut tile.pixels {
-        TilePixels::Single(pixels) => expose_pixels(paths, joint, pixels, dropped),
-        TilePixels::Double(pixels) => expose_pixels(paths, joint, pixels, dropped),
+        TilePixels::Single(pixels) => expose_pixels(paths, joint, weight, pixels, dropped),
+        TilePixels::Double(pixels) => expose_pixels(paths, joint, weight, pixels, dropped),
         TilePixels::Compensated(pixels) => {
-            expose_pixels(paths, joint, pixels, dropped);
+            expose_pixels(paths, joint, weight, pixels, dropped);
         }
     }
     if let Some(moments) = &mut tile.second_moments {
-        expose_moments(paths, moments);
+        expose_moments(paths, weight, moments);
     }
 }
 
 /// Adds the squares of the paths to their pixels.
-fn expose_moments<C: Colour>(paths: &CameraPaths<C>, moments: &mut SecondMoments) {
+fn expose_moments<C: Colour>(paths: &CameraPaths<C>, weight: f64, moments: &mut SecondMoments) {
     for path in 0..paths.radiance.len() {
         if let Some(rgb) = rgb(paths, path) {
-            let weight = f64::from(paths.filter_weight[path]);
+            let weight = weight * f64::from(paths.filter_weight[path]);
             let xyz = xyz_from_srgb(rgb.map(f64::from));
             moments.add(paths.pixel(path as u32) as usize, xyz, weight);
         }
@@ -51,6 +52,7 @@ fn expose_moments<C: Colour>(paths: &CameraPaths<C>, moments: &mut SecondMoments
 fn expose_pixels<C: Colour, A: Accumulator>(
     paths: &CameraPaths<C>,
     joint: bool,
+    weight: f64,
     pixels: &mut [PixelStatistics<A>],
     dropped: &mut DroppedSamples,
 ) {
@@ -68,11 +70,11 @@ fn expose_pixels<C: Colour, A: Accumulator>(
                     sum.add(value);
                 }
             } else {
-                statistics.add_unit(1, rgb);
+                statistics.add_unit(1, weight, rgb);
             }
         }
         if joint {
-            statistics.add_unit(samples, sum.map(A::total));
+            statistics.add_unit(samples, weight, sum.map(A::total));
         }
         *pixel = statistics;
     }
