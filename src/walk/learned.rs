@@ -50,8 +50,8 @@ impl Learned<'_> {
     /// ```
     ///
     /// (Rath et al. 2022, "EARS: Efficiency-Aware Russian Roulette and Splitting", section 4). Ending a path is decided by nu_r, for it risks
-    /// everything; splitting it by nu_s, for copies share their mean. Between them lies a range in which a path goes on alone, and which is wider by the factor
-    /// `dead_zone`, at least 1, to both sides.
+    /// everything; splitting it by nu_s, for copies share their mean. Between them lies a range in which a path goes on alone. It reaches from nu_r = 1 / z
+    /// to nu_r = z at least, and counts beyond are drawn to 1 by that factor z, the `dead_zone`, at least 1.
     #[inline(always)]
     pub(super) fn efficient_count(
         &self,
@@ -67,12 +67,13 @@ impl Learned<'_> {
             Objective::Mse => self.absolute_factor * reflected,
         };
         let count = |spread: f32| t * (spread / self.cost[index]).sqrt();
-        let roulette = count(square) * dead_zone;
-        if roulette < 1.0 {
-            return roulette.max(least);
+        let roulette = count(square);
+        let drawn_up = roulette * dead_zone;
+        if drawn_up < 1.0 {
+            return drawn_up.max(least);
         }
-        let splitting = count((square - mean * mean).max(0.0)) / dead_zone;
-        splitting.clamp(1.0, most)
+        let splitting = count((square - mean * mean).max(0.0));
+        splitting.min(roulette / dead_zone).clamp(1.0, most)
     }
 }
 

@@ -9,9 +9,10 @@
 //! nu_k = W_k a_k / I sqrt(E[v^2] / c) sqrt(image cost / image relative variance)
 //! ```
 //!
-//! v is what a child brings back, c the rays that it takes, I the brightness of the pixel; counts above 1 go by Var\[v\] instead of E\[v^2\], as in
-//! [`ears`](super::ears). A dead zone leaves particles alone up to a factor of 3/2 beyond; nu is kept from 0.02 to 20, and all particles together get at most four children for
-//! each camera path. Before anything is learned, nu is W a.
+//! v is what a child brings back, c the rays that it takes, I the brightness of the pixel. A dead zone leaves particles alone from 2/3 to 3/2, and draws
+//! other counts to 1 by the same factor. No count above 1 is more than Var\[v\] instead of E\[v^2\] would make it, for copies of what does not vary are
+//! worth nothing; nu is kept from 0.02 to 20, and all particles together get at most four children for each camera path. Before anything is learned,
+//! nu is W a.
 //!
 //! **By importance** (`rule` `importance`), as the paper has it, the resampling equalises the importance:
 //!
