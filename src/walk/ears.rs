@@ -54,10 +54,10 @@ impl Strategy for Ears {
 
     fn expected_counts(&self, population: &Population, nu: &mut [f32]) {
         for (index, nu) in nu.iter_mut().enumerate() {
-            *nu = match population.known(index) {
-                Some(learned) => learned.efficient_count(self.objective, 1.0, index),
-                None => before_lessons(population, index),
-            };
+            *nu = before_lessons(population, index);
+        }
+        if let Some(learned) = &population.learned {
+            learned.efficient_counts(self.objective, 1.0, nu);
         }
         bound(population, nu);
     }

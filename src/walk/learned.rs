@@ -43,7 +43,7 @@ impl Learned<'_> {
         columns.iter().all(|column| column.len() == count)
     }
 
-    /// The efficient number of children of particle number `index`: of all counts it makes variance times cost least,
+    /// Writes the efficient numbers of children into `nu`, where something is known of a particle: of all counts they make variance times cost least,
     ///
     /// ```text
     /// nu_r = t sqrt(E[v^2] / c),   nu_s = t sqrt(Var[v] / c),   t = W a / I sqrt(image cost / image variance)
@@ -52,29 +52,50 @@ impl Learned<'_> {
     /// (Rath et al. 2022, "EARS: Efficiency-Aware Russian Roulette and Splitting", section 4). Ending a path is decided by nu_r, for it risks
     /// everything; splitting it by nu_s, for copies share their mean. Between them lies a range in which a path goes on alone. It reaches from nu_r = 1 / z
     /// to nu_r = z at least, and counts beyond are drawn to 1 by that factor z, the `dead_zone`, at least 1.
-    #[inline(always)]
-    pub(super) fn efficient_count(
-        &self,
-        objective: Objective,
-        dead_zone: f32,
-        index: usize,
-    ) -> f32 {
-        let [least, most] = BOUNDS;
-        let (mean, square) = (self.mean[index], self.square[index]);
-        let reflected = self.reflected[index];
-        let t = match objective {
-            Objective::Relative => self.relative_factor * reflected / self.brightness[index],
-            Objective::Mse => self.absolute_factor * reflected,
-        };
-        let count = |spread: f32| t * (spread / self.cost[index]).sqrt();
-        let roulette = count(square);
-        let drawn_up = roulette * dead_zone;
-        if drawn_up < 1.0 {
-            return drawn_up.max(least);
+    pub(super) fn efficient_counts(&self, objective: Objective, dead_zone: f32, nu: &mut [f32]) {
+        match objective {
+            Objective::Relative => {
+                let per_reflected = |brightness| self.relative_factor / brightness;
+                self.counts(per_reflected, dead_zone, nu);
+            }
+            Objective::Mse => self.counts(|_| self.absolute_factor, dead_zone, nu),
         }
-        let splitting = count((square - mean * mean).max(0.0));
-        splitting.min(roulette / dead_zone).clamp(1.0, most)
     }
+
+    /// The same for t / (W a) as a function of the brightness.
+    #[inline(always)]
+    fn counts(&self, per_reflected: impl Fn(f32) -> f32, dead_zone: f32, nu: &mut [f32]) {
+        let [least, most] = BOUNDS;
+        let moments = self.mean.iter().zip(self.square).zip(self.cost);
+        let pixels = self.reflected.iter().zip(self.brightness);
+        for (nu, (((&mean, &square), &cost), (&reflected, &brightness))) in
+            nu.iter_mut().zip(moments.zip(pixels))
+        {
+            let t = reflected * per_reflected(brightness);
+            let count = |spread: f32| t * (spread / cost).sqrt();
+            let roulette = count(square);
+            let splitting = count((square - mean * mean).max(0.0));
+            let drawn_up = roulette * dead_zone;
+            let drawn_down = splitting.min(roulette / dead_zone);
+            let efficient = if drawn_up < 1.0 {
+                drawn_up.max(least)
+            } else {
+                drawn_down.clamp(1.0, most)
+            };
+            // No jumps: particles side by side are looked at together.
+            *nu = if is_known(square, brightness) {
+                efficient
+            } else {
+                *nu
+            };
+        }
+    }
+}
+
+/// Whether anything was learned of a particle. Where no light was found yet, it may be there all the same.
+#[inline(always)]
+pub(super) fn is_known(square: f32, brightness: f32) -> bool {
+    (square > 0.0) & (brightness > 0.0)
 }
 
 /// Keeps the number of children that are expected of all particles together at or below [`MOST_PER_PATH`] for each camera path.

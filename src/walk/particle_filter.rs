@@ -208,10 +208,8 @@ impl Strategy for ParticleFilter {
         let Some(objective) = self.objective else {
             return;
         };
-        for (index, nu) in nu.iter_mut().enumerate() {
-            if let Some(learned) = population.known(index) {
-                *nu = learned.efficient_count(objective, DEAD_ZONE, index);
-            }
+        if let Some(learned) = &population.learned {
+            learned.efficient_counts(objective, DEAD_ZONE, nu);
         }
         bound(population, nu);
     }

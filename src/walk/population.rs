@@ -5,6 +5,7 @@ use std::ops::AddAssign;
 use serde::{Deserialize, Serialize};
 
 use super::Learned;
+use super::learned::is_known;
 use crate::sampling::Decisions;
 
 /// What a strategy may know of the particles of a batch: one entry per particle in every slice.
@@ -62,10 +63,9 @@ impl Population<'_> {
     /// What was learned, if anything was of particle number `index`.
     #[inline(always)]
     pub(super) fn known(&self, index: usize) -> Option<&Learned<'_>> {
-        // Where no light was found yet, it may be there all the same.
-        self.learned
-            .as_ref()
-            .filter(|learned| learned.square[index] > 0.0 && learned.brightness[index] > 0.0)
+        let is_known =
+            |learned: &&Learned| is_known(learned.square[index], learned.brightness[index]);
+        self.learned.as_ref().filter(is_known)
     }
 
     /// Each particle in turn.
