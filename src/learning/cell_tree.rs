@@ -9,14 +9,19 @@ const FINEST: u32 = 21;
 /// Halvings along each axis that the table of first nodes takes at once.
 const TABLE_BITS: u32 = 5;
 
+/// What marks cells in the table.
+const LEAF: u32 = 1 << 31;
+
 /// A binary tree over a cube. A node is halved along x, y and z in turn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellTree {
     corner: [f32; 3],
-    side: f32,
+    /// How many of the finest cells there are along a unit of length.
+    scale: f32,
     nodes: Vec<Node>,
     cells: u32,
-    /// For every cell of the grid with 2^[`TABLE_BITS`] cells along each axis, the node that contains it and is not smaller.
+    /// For every cell of the grid with 2^[`TABLE_BITS`] cells along each axis, the node that contains it and is not smaller: the number of its cell, from
+    /// [`LEAF`] on, or its own if it is an inner node.
     table: Vec<u32>,
 }
 
@@ -53,7 +58,7 @@ impl CellTree {
             } else {
                 [0.0; 3]
             },
-            side,
+            scale: (1 << FINEST) as f32 / side,
             nodes: vec![root],
             cells: 1,
             table: Vec::new(),
@@ -71,16 +76,20 @@ impl CellTree {
     }
 
     /// The number of the cell at `position` (world space); outside of the cube, of the nearest one.
-    #[inline]
+    #[inline(always)]
     pub fn cell(&self, position: Vec3) -> u32 {
-        let place = (position - Vec3::from(self.corner)) * ((1 << FINEST) as f32 / self.side);
+        let place = (position - Vec3::from(self.corner)) * self.scale;
         // Conversion saturates, and gives 0 for what is no number.
         let [x, y, z] = place
             .to_array()
             .map(|place| (place as u32).min((1 << FINEST) - 1));
         let coarse = |place: u32| place >> (FINEST - TABLE_BITS);
         let start = (coarse(x) << TABLE_BITS | coarse(y)) << TABLE_BITS | coarse(z);
-        let mut node = self.nodes[self.table[start as usize] as usize];
+        let first = self.table[start as usize];
+        if first >= LEAF {
+            return first - LEAF;
+        }
+        let mut node = self.nodes[first as usize];
         while node.halves > 0 {
             let depth = u32::from(node.depth);
             let along = [x, y, z][(depth % 3) as usize];
@@ -188,7 +197,11 @@ impl CellTree {
                 index = node.halves + (along >> (TABLE_BITS - 1 - depth / 3) & 1);
                 node = self.nodes[index as usize];
             }
-            table.push(index);
+            table.push(if node.halves > 0 {
+                index
+            } else {
+                LEAF + node.cell
+            });
         }
         self.table = table;
     }
