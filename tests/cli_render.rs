@@ -34,6 +34,34 @@ fn pixels<'a>(arguments: impl IntoIterator<Item = &'a str>) -> Vec<[u32; 3]> {
     bits.collect()
 }
 
+/// Two renders of the same pixels by other seeds differ by what both say of their variance.
+#[test]
+fn the_variance_is_written_where_it_is_asked_for() {
+    let folder = Folder::new();
+    let out = folder.path().join("out.exr");
+    let render = |spp, seed| {
+        let output = folder.render(SCENE, ["--spp", spp, "--seed", seed, "--variance"]);
+        assert!(output.status.success(), "{output:?}");
+        let variance = cohort::film::read_exr_variance(&out).unwrap();
+        (cohort::read_exr(&out).unwrap(), variance, output.stderr)
+    };
+    let (_, nothing, warning) = render("1", "1");
+    assert_eq!(nothing, None);
+    let warning = String::from_utf8(warning).unwrap();
+    assert!(warning.contains("no variance is written"), "{warning}");
+
+    let [(one, of_one, quiet), (other, of_other, _)] = ["1", "2"].map(|seed| render("64", seed));
+    assert!(quiet.is_empty());
+    let mean = |image: &cohort::film::Image| image.mean()[1];
+    let believed = mean(&of_one.unwrap()) + mean(&of_other.unwrap());
+    let pixels = one.pixels().iter().zip(other.pixels());
+    let squares: Vec<f64> = pixels
+        .map(|(one, other)| f64::from(one[1] - other[1]).powi(2))
+        .collect();
+    let seen = squares.iter().sum::<f64>() / squares.len() as f64;
+    assert!((0.5..2.0).contains(&(seen / believed)), "{seen} {believed}");
+}
+
 #[test]
 fn the_built_in_scene() {
     let folder = Folder::new();

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use cohort::embree::BuildQuality;
-use cohort::film::{ExrMoments, ExrOptions, Film, FilmSums, write_exr, write_png};
+use cohort::film::{ExrMoments, ExrOptions, Film, FilmSums, Image, write_exr, write_png};
 use cohort::render::{Budget, ColourMode, Ended, Render, Settings, WavelengthCount, metadata};
 use cohort::sampling::SamplerKind;
 use cohort::scene::{PathIntegrator, Scene};
@@ -18,7 +18,7 @@ use cohort::transport::DirectLight;
 use super::interrupt::stop_on_interrupt;
 use super::output::OutputFiles;
 use super::parse::{Switch, parse_count, parse_rays, parse_seed, parse_threads, parse_time};
-use super::report::{Bar, summarise, warn_of_darkness};
+use super::report::{Bar, summarise, tell, warn_of_darkness};
 use super::scene_args::SceneArgs;
 use super::strategy_args::StrategyArgs;
 
@@ -79,6 +79,10 @@ pub struct RenderArgs {
     /// Most segments of a path, camera ray included [default: what the scene says]
     #[arg(long, value_name = "N", value_parser = parse_count)]
     max_depth: Option<NonZeroU32>,
+
+    /// Also write the variance of every pixel's mean, as channels variance.R, variance.G and variance.B
+    #[arg(long)]
+    variance: bool,
 
     /// Watertight intersection, somewhat slower
     #[arg(long)]
@@ -150,9 +154,12 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
         format: film.pixel_format,
         half_precision: film.half_precision,
         samples: outcome.film.unequal_samples(),
+        variance: arguments
+            .variance
+            .then(|| variance(&outcome.film))
+            .flatten(),
         moments: moments(&render, &outcome.film),
         attributes: metadata(&render, &outcome),
-        ..ExrOptions::default()
     };
     write_exr(&files.exr, &image, &options)?;
     write_png(&files.png, &image)?;
@@ -161,6 +168,17 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
         Ended::Complete | Ended::OutOfTime | Ended::OutOfRays => ExitCode::SUCCESS,
         Ended::Interrupted => ExitCode::from(130),
     })
+}
+
+/// The variance of every pixel, where the samples tell.
+fn variance(film: &Film) -> Option<Image> {
+    let variance = film.variance();
+    if variance.is_none() {
+        tell(
+            "warning: no variance is written, for a pixel has only one sample or population, which does not tell how much they differ",
+        );
+    }
+    variance
 }
 
 /// The moments of the samples, where the scene asks for them.
