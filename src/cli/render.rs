@@ -80,7 +80,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = parse_count)]
     max_depth: Option<NonZeroU32>,
 
-    /// Also write the variance of every pixel's mean, as channels variance.R, variance.G and variance.B
+    /// Also write the variance of every pixel's mean, as channels variance.R, variance.G and variance.B (by sequences, an upper estimate)
     #[arg(long)]
     variance: bool,
 
