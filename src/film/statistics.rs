@@ -6,10 +6,11 @@ use super::Accumulator;
 
 /// What the samples of one pixel add up to, in linear sRGB.
 ///
-/// The samples arrive in *units*, none of which has been influenced by the noise of another: one camera path, or, where a strategy
-/// resamples several camera paths together, all samples that one population had in the pixel. The mean of the pixel is that of the
-/// units, each weighted by its number of samples; its variance shows in how far each unit is from the mean of those before it.
-/// The noise of units need not be alike: a render that learns has better ones later.
+/// The samples arrive in *units*, each of which is right on average whatever those before it were: one camera path, or, where a strategy
+/// resamples several camera paths together, all samples that one population had in the pixel. Their variance shows in how far each
+/// unit is from the mean of those before it. The noise of units need not be alike: a render that learns has better ones later.
+///
+/// A sample has a *weight*, which nothing random may decide: 1, or less where much noise is expected.
 ///
 /// `A` are the numbers of the sums. All other arithmetic is in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
