@@ -73,8 +73,8 @@ impl Schedule {
             .min(missing(until, before))
     }
 
-    /// Whether a render that learns does so from a pass before which every pixel has had so many samples: from the first quarter of a given
-    /// number, and never from more than [`LESSONS`] and [`TEACHING_PATHS`] allow.
+    /// Whether a render that learns does so from a pass before which every pixel has had so many samples: from all that begin in the first quarter of a
+    /// given number, and never from more than [`LESSONS`] and [`TEACHING_PATHS`] allow.
     pub fn teaches(&self, before: u64) -> bool {
         before < u64::from(self.lessons())
     }
