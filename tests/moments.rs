@@ -142,6 +142,25 @@ fn second_moments_are_mitsubas() {
     }
 }
 
+/// A quarter of the samples teaches and weighs half: squares that did not would be a seventh too many.
+#[test]
+fn squares_weigh_what_samples_do() {
+    let settings = Settings {
+        strategy: StrategyKind::Ears
+            .build(&StrategyOptions::default())
+            .expect("defaults are valid"),
+        colour: ColourMode::Rgb,
+        budget: spp(64),
+        ..Settings::default()
+    };
+    let render = Render::new(scene("box"), settings).expect("the scene can be rendered");
+    let mut state = render.start(0);
+    assert_eq!(advance(&render, &mut state, spp(64)), Ended::Complete);
+    let [[_, found, _], ..] = quarters(&moments(&state));
+    let [expected, _] = EXPECTED[0].quarters[0][1];
+    assert!((found / expected - 1.0).abs() < 0.06, "{found} {expected}");
+}
+
 #[test]
 fn slices_and_threads_change_no_bit() {
     for strategy in [StrategyKind::Roulette, StrategyKind::ParticleFilter] {
