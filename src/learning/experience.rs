@@ -21,6 +21,9 @@ const OF_FAMILY: f32 = 4.0;
 /// How many observations of its own mean each bin of a family is filled up with.
 const OF_MEAN: f32 = 2.0;
 
+/// Directions are guided where so much of the variance at most is left by it: it takes time, and where light comes from everywhere it brings nothing.
+const WORTH_GUIDING: f32 = 0.9;
+
 /// All observations so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Experience {
@@ -45,12 +48,14 @@ struct Sums {
 struct BinSums {
     count: f32,
     radiance: f32,
+    square: f32,
 }
 
 impl BinSums {
     fn add(&mut self, other: Self, share: f32) {
         self.count += share * other.count;
         self.radiance += share * other.radiance;
+        self.square += share * other.square;
     }
 }
 
@@ -73,42 +78,42 @@ impl Sums {
         self.cost += observation.cost;
         if let Some(bin) = observation.bin {
             let [row, column] = bin.place();
-            self.bins[row][column].count += 1.0;
-            self.bins[row][column].radiance += observation.radiance;
+            let bin = &mut self.bins[row][column];
+            bin.count += 1.0;
+            bin.radiance += observation.radiance;
+            bin.square += observation.radiance * observation.radiance;
         }
     }
 
     /// What these sums say, filled up with [`OF_FAMILY`] observations like those of the `family`.
     fn insight(&self, family: &Self) -> Insight {
-        let mean = ratio(
-            family
-                .bins
-                .as_flattened()
-                .iter()
-                .map(|bin| bin.radiance)
-                .sum(),
-            family.count,
-        );
-        let mut radiance = [[0.0; SIDE]; SIDE];
-        let bins = self
-            .bins
-            .as_flattened()
-            .iter()
-            .zip(family.bins.as_flattened());
-        for (radiance, (bin, family)) in radiance.as_flattened_mut().iter_mut().zip(bins) {
-            let of_family = (family.radiance + OF_MEAN * mean) / (family.count + OF_MEAN);
-            *radiance = (bin.radiance + OF_FAMILY * of_family) / (bin.count + OF_FAMILY);
-        }
         let filled = |own: f32, of_family: f32| {
             let prior = ratio(of_family, family.count);
             (own + OF_FAMILY * prior) / (self.count + OF_FAMILY)
         };
+        let radiance = self.means(family, |bin| bin.radiance);
+        let square = self.means(family, |bin| bin.square);
+        let warp = SquareWarp::new(&radiance, family.count);
         Insight {
-            warp: SquareWarp::new(&radiance, family.count),
             mean: filled(self.value, family.value),
             square: filled(self.square, family.square),
             cost: filled(self.cost, family.cost),
+            guides: warp.variance_left(&radiance, &square) < WORTH_GUIDING,
+            warp,
         }
+    }
+
+    /// The mean of what `sum` adds up, for each bin: filled up by the `family`, and that by the mean of all its bins.
+    fn means(&self, family: &Self, sum: impl Fn(&BinSums) -> f32) -> [[f32; SIDE]; SIDE] {
+        let of_family = family.bins.as_flattened();
+        let mean = ratio(of_family.iter().map(&sum).sum(), family.count);
+        let mut means = [[0.0; SIDE]; SIDE];
+        let bins = self.bins.as_flattened().iter().zip(of_family);
+        for (filled, (own, family)) in means.as_flattened_mut().iter_mut().zip(bins) {
+            let of_family = (sum(family) + OF_MEAN * mean) / (family.count + OF_MEAN);
+            *filled = (sum(own) + OF_FAMILY * of_family) / (own.count + OF_FAMILY);
+        }
+        means
     }
 }
 
@@ -306,6 +311,29 @@ mod tests {
         let bright = insights[0].warp.density(Bin::of([3.5 / 8.0, 2.5 / 8.0]));
         let dark = insights[0].warp.density(Bin::of([2.5 / 8.0, 3.5 / 8.0]));
         assert!(bright > 30.0 && dark < 0.5, "{bright} {dark}");
+        assert!(insights[0].guides);
+    }
+
+    /// What is the same from everywhere, or noise from everywhere.
+    #[test]
+    fn light_from_everywhere_does_not_guide() {
+        for rare in [1, 3, 101] {
+            let mut tree = tree();
+            let address = address(&tree, 0.1);
+            let from_everywhere = (0..64_000).map(|i| {
+                let bin = Bin::of([i % 8, i / 8 % 8].map(|k| (k as f32 + 0.5) / 8.0));
+                let radiance = if i % rare == 0 { 10.0 } else { 0.0 };
+                Observation {
+                    bin: Some(bin),
+                    radiance,
+                    ..observation(address, 1.0)
+                }
+            });
+            let mut experience = observed(from_everywhere);
+            experience.refine(&mut tree);
+            let (_, insights) = experience.insights(&tree);
+            assert!(insights.iter().all(|insight| !insight.guides), "{rare}");
+        }
     }
 
     #[test]

@@ -22,6 +22,8 @@ pub struct Insight {
     pub square: f32,
     /// How many rays such a path takes.
     pub cost: f32,
+    /// Whether directions gain by being drawn from where it comes.
+    pub guides: bool,
     /// From where, on the square that directions are drawn from.
     pub warp: SquareWarp,
 }

@@ -16,6 +16,9 @@ const TRUST: f32 = 0.7;
 /// alone, so does the noise.
 const HALF_KNOWN: f32 = 4.0;
 
+/// The variance in a bin is taken to be this part of the second moment at least: few observations may have been alike by chance.
+const LEAST_VARIANCE: f32 = 0.1;
+
 /// What the heights of a distribution add up to.
 const WHOLE: u32 = 1 << 16;
 
@@ -92,6 +95,26 @@ impl SquareWarp {
     pub fn density(&self, bin: Bin) -> f32 {
         let [row, column] = bin.place();
         self.product(row, column)
+    }
+
+    /// The variance of what is collected with warped points, in parts of that with even points, where `mean` and `square` are the first two moments
+    /// of what arrives in each bin.
+    ///
+    /// It is that within bins: points that are spread evenly know most of what differs between them.
+    pub(super) fn variance_left(
+        &self,
+        mean: &[[f32; SIDE]; SIDE],
+        square: &[[f32; SIDE]; SIDE],
+    ) -> f32 {
+        let (mut even, mut warped) = (0.0, 0.0);
+        for (row, (mean, square)) in mean.iter().zip(square).enumerate() {
+            for (column, (&mean, &square)) in mean.iter().zip(square).enumerate() {
+                let variance = (square - mean * mean).max(LEAST_VARIANCE * square);
+                even += variance;
+                warped += variance / self.product(row, column);
+            }
+        }
+        warped / even
     }
 
     #[inline(always)]
@@ -225,6 +248,26 @@ mod tests {
         assert_eq!(peak(0.0), 1.0);
         assert!((peak(HALF_KNOWN * 64.0) - 1.0 - 0.5 * TRUST * 63.0).abs() < 1e-3);
         assert!(peak(1e9) > 44.0);
+    }
+
+    /// Points that are drawn in proportion to a deviation leave the square of its mean, of the mean of its square.
+    #[test]
+    fn variance_is_left_where_points_are_rare() {
+        let mut deviation = [[1.0; SIDE]; SIDE];
+        deviation[3][3] = 64.0;
+        let square = deviation.map(|row| row.map(|deviation| deviation * deviation));
+        let mean = [[0.0; SIDE]; SIDE];
+        let even = SquareWarp::UNIFORM.variance_left(&mean, &square);
+        assert!((even - 1.0).abs() < 1e-6, "{even}");
+        let density = |value: f32| 1.0 - TRUST + TRUST * value * 64.0 / 127.0;
+        let expected = (4096.0 / density(64.0) + 63.0 / density(1.0)) / (4096.0 + 63.0);
+        let left = SquareWarp::new(&deviation, 1e9).variance_left(&mean, &square);
+        assert!(
+            (left - expected).abs() < 1e-3 * expected,
+            "{left} {expected}"
+        );
+        let nothing = [[0.0; SIDE]; SIDE];
+        assert!(SquareWarp::UNIFORM.variance_left(&mean, &nothing).is_nan());
     }
 
     #[test]

@@ -112,6 +112,8 @@ pub(super) struct ShadowRays<C: Colour> {
 pub(super) struct Particles {
     pub importance: Vec<f32>,
     pub albedo: Vec<f32>,
+    /// Throughput times albedo, as a mean over wavelengths.
+    pub reflected: Vec<f32>,
     pub shininess: Vec<f32>,
     pub group: Vec<u32>,
 }
@@ -316,6 +318,7 @@ impl Particles {
     pub fn resize(&mut self, count: usize) {
         resize(&mut self.importance, count);
         resize(&mut self.albedo, count);
+        resize(&mut self.reflected, count);
         resize(&mut self.shininess, count);
         resize(&mut self.group, count);
     }

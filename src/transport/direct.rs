@@ -66,8 +66,10 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
         );
         if let Some(knowledge) = knowledge {
             let bsdfs_of_chunk = &vertices.bsdf[chunk.clone()];
-            guidance.ask(knowledge, vertices.address[chunk.clone()].iter().copied());
-            guidance.mix(bsdfs_of_chunk, &normals, &lights.direction, &mut bsdfs);
+            let addresses = vertices.address[chunk.clone()].iter().copied();
+            if guidance.ask(knowledge, bsdfs_of_chunk.iter().zip(addresses)) {
+                guidance.mix(bsdfs_of_chunk, &normals, &lights.direction, &mut bsdfs);
+            }
         }
         normals.load(vertices.geometric_normal.slices(chunk.clone()));
         let clearances = vertices.clearances(chunk.clone(), &mut clearances);

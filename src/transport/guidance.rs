@@ -17,7 +17,8 @@ use crate::spectrum::SpectrumArithmetic;
 /// What is known in each lane.
 pub(super) struct Guidance<'k> {
     warps: [&'k SquareWarp; CHUNK],
-    is_known: [bool; CHUNK],
+    /// The share of directions that are drawn from the warped square.
+    share: [f32; CHUNK],
     /// The density of the point to which each was warped.
     density: [f32; CHUNK],
     /// Which lanes draw from the warped square though it is mixed with lobes.
@@ -29,32 +30,32 @@ impl<'k> Guidance<'k> {
     pub fn new() -> Self {
         Self {
             warps: [&SquareWarp::UNIFORM; CHUNK],
-            is_known: [false; CHUNK],
+            share: [0.0; CHUNK],
             density: [1.0; CHUNK],
             is_redirected: [false; CHUNK],
         }
     }
 
-    /// Asks for what is known at the `addresses` of at most [`CHUNK`] vertices.
+    /// Asks for what is known at at most [`CHUNK`] `vertices`, with their addresses. Returns whether any of them is guided: without, there
+    /// is nothing to correct.
     #[inline(always)]
-    pub fn ask(&mut self, knowledge: &'k Knowledge, addresses: impl Iterator<Item = u32>) {
-        for (lane, address) in (0..CHUNK).zip(addresses) {
-            let insight = knowledge.insight(address);
-            self.is_known[lane] = insight.is_some();
-            self.warps[lane] = insight.map_or(&SquareWarp::UNIFORM, |insight| &insight.warp);
+    pub fn ask<'a, S: SpectrumArithmetic, V: Scattering<S>>(
+        &mut self,
+        knowledge: &'k Knowledge,
+        vertices: impl Iterator<Item = (&'a V, u32)>,
+    ) -> bool {
+        let mut is_any_guided = false;
+        for (lane, (vertex, address)) in (0..CHUNK).zip(vertices) {
+            let guide = knowledge.insight(address).filter(|insight| insight.guides);
+            self.share[lane] = 0.0;
+            self.warps[lane] = &SquareWarp::UNIFORM;
+            if let Some(insight) = guide {
+                self.share[lane] = vertex.guided_share();
+                self.warps[lane] = &insight.warp;
+                is_any_guided |= self.share[lane] > 0.0;
+            }
         }
-    }
-
-    /// The share of directions that a vertex draws from the square.
-    #[inline(always)]
-    fn share<S: SpectrumArithmetic, V: Scattering<S>>(&self, lane: usize, vertex: &V) -> f32 {
-        let share = vertex.guided_share();
-        // What is not known is not mixed with anything; all from the even square is the same as none.
-        if self.is_known[lane] || share >= 1.0 {
-            share
-        } else {
-            0.0
-        }
+        is_any_guided
     }
 
     /// Corrects the densities with which the `vertices` draw `directions`.
@@ -67,21 +68,17 @@ impl<'k> Guidance<'k> {
         values: &mut BsdfValues<S>,
     ) {
         let places = SquarePlaces::of(vertices.iter(), normals, directions);
-        for (lane, vertex) in (0..CHUNK).zip(vertices) {
+        for lane in 0..vertices.len().min(CHUNK) {
             let guided = guided_pdf(self.warps[lane], places.bins[lane], places.cosines[lane]);
-            values.pdf[lane] = mixed_pdf(self.share(lane, vertex), guided, values.pdf[lane]);
+            values.pdf[lane] = mixed_pdf(self.share[lane], guided, values.pdf[lane]);
         }
     }
 
-    /// Warps the uniform `numbers` with which at most [`CHUNK`] `vertices` are about to draw directions.
+    /// Warps the uniform `numbers` with which the first `count` vertices are about to draw directions.
     #[inline(always)]
-    pub fn warp<'a, S: SpectrumArithmetic, V: Scattering<S>>(
-        &mut self,
-        vertices: impl Iterator<Item = &'a V>,
-        numbers: &mut [[f32; CHUNK]; 3],
-    ) {
-        for (lane, vertex) in (0..CHUNK).zip(vertices) {
-            let share = self.share(lane, vertex);
+    pub fn warp(&mut self, count: usize, numbers: &mut [[f32; CHUNK]; 3]) {
+        for lane in 0..count.min(CHUNK) {
+            let share = self.share[lane];
             let [u, v, choice] = numbers.each_mut().map(|numbers| &mut numbers[lane]);
             // Where it is mixed, one number decides who draws, and what is left of it chooses the lobe.
             let is_drawn_from_square = share >= 1.0 || *choice < share;
@@ -106,7 +103,7 @@ impl<'k> Guidance<'k> {
         samples: &mut BsdfSamples<S>,
     ) {
         for (lane, vertex) in (0..CHUNK).zip(vertices) {
-            let share = self.share(lane, vertex);
+            let share = self.share[lane];
             if share >= 1.0 {
                 samples.pdf[lane] *= self.density[lane];
                 samples.weight[lane] *= 1.0 / self.density[lane];

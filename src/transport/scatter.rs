@@ -69,15 +69,15 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         }
         let parents = children.iter().map(|child| child.parent as usize);
         let bsdfs = parents.clone().map(|parent| &vertices.bsdf[parent]);
-        if let Some(knowledge) = knowledge {
-            guidance.ask(
-                knowledge,
-                parents.clone().map(|parent| vertices.address[parent]),
-            );
-            guidance.warp(bsdfs.clone(), &mut numbers);
+        let is_guided = knowledge.is_some_and(|knowledge| {
+            let addresses = parents.clone().map(|parent| vertices.address[parent]);
+            guidance.ask(knowledge, bsdfs.clone().zip(addresses))
+        });
+        if is_guided {
+            guidance.warp(children.len(), &mut numbers);
         }
         V::Scattering::sample(bsdfs.clone(), &normals, &numbers, &mut samples);
-        if knowledge.is_some() {
+        if is_guided {
             guidance.redirect(bsdfs.clone(), &normals, &numbers, &mut samples);
         }
         if learns {

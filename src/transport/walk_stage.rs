@@ -49,7 +49,9 @@ pub(super) fn decide<C: Colour, V: Variant>(
         points: sampler.decisions(&vertices.point),
         learned: knowledge
             .filter(|_| strategy.learns())
-            .and_then(|knowledge| recollection.recall(knowledge, paths, vertices)),
+            .and_then(|knowledge| {
+                recollection.recall(knowledge, paths, vertices, &particles.reflected)
+            }),
     };
     strategy.resample(&population, sampler.stream(), offspring)
 }
@@ -73,14 +75,24 @@ fn show<C: Colour, V: Variant>(
     for (importance, &throughput) in particles.importance.iter_mut().zip(&vertices.throughput) {
         *importance = scalar(throughput);
     }
+    let both = particles.albedo.iter_mut().zip(&mut particles.reflected);
+    let vertex = vertices.bsdf.iter().zip(&vertices.throughput);
+    for ((albedo, reflected), (bsdf, &throughput)) in both.zip(vertex) {
+        let spectrum = bsdf.albedo();
+        *albedo = scalar(spectrum);
+        *reflected = (throughput * spectrum).mean();
+    }
     if V::REFRACTS {
         // As Mitsuba's roulette: light is not less important for being compressed.
-        for (importance, bsdf) in particles.importance.iter_mut().zip(&vertices.bsdf) {
-            *importance *= bsdf.refraction().squared_index;
+        let both = particles
+            .importance
+            .iter_mut()
+            .zip(&mut particles.reflected);
+        for ((importance, reflected), bsdf) in both.zip(&vertices.bsdf) {
+            let squared_index = bsdf.refraction().squared_index;
+            *importance *= squared_index;
+            *reflected *= squared_index;
         }
-    }
-    for (albedo, bsdf) in particles.albedo.iter_mut().zip(&vertices.bsdf) {
-        *albedo = scalar(bsdf.albedo());
     }
     for (shininess, bsdf) in particles.shininess.iter_mut().zip(&vertices.bsdf) {
         *shininess = bsdf.shininess();

@@ -1,5 +1,7 @@
 //! What a render has learned of its particles.
 
+use multiversion::multiversion;
+
 use super::{Objective, Population, Roulette};
 
 /// The least and the largest number of children.
@@ -53,42 +55,42 @@ impl Learned<'_> {
     /// everything; splitting it by nu_s, for copies share their mean. Between them lies a range in which a path goes on alone. It reaches from nu_r = 1 / z
     /// to nu_r = z at least, and counts beyond are drawn to 1 by that factor z, the `dead_zone`, at least 1.
     pub(super) fn efficient_counts(&self, objective: Objective, dead_zone: f32, nu: &mut [f32]) {
-        match objective {
-            Objective::Relative => {
-                let per_reflected = |brightness| self.relative_factor / brightness;
-                self.counts(per_reflected, dead_zone, nu);
-            }
-            Objective::Mse => self.counts(|_| self.absolute_factor, dead_zone, nu),
-        }
+        efficient_counts(self, objective, dead_zone, nu);
     }
+}
 
-    /// The same for t / (W a) as a function of the brightness.
-    #[inline(always)]
-    fn counts(&self, per_reflected: impl Fn(f32) -> f32, dead_zone: f32, nu: &mut [f32]) {
-        let [least, most] = BOUNDS;
-        let moments = self.mean.iter().zip(self.square).zip(self.cost);
-        let pixels = self.reflected.iter().zip(self.brightness);
-        for (nu, (((&mean, &square), &cost), (&reflected, &brightness))) in
-            nu.iter_mut().zip(moments.zip(pixels))
-        {
-            let t = reflected * per_reflected(brightness);
-            let count = |spread: f32| t * (spread / cost).sqrt();
-            let roulette = count(square);
-            let splitting = count((square - mean * mean).max(0.0));
-            let drawn_up = roulette * dead_zone;
-            let drawn_down = splitting.min(roulette / dead_zone);
-            let efficient = if drawn_up < 1.0 {
-                drawn_up.max(least)
-            } else {
-                drawn_down.clamp(1.0, most)
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn efficient_counts(learned: &Learned, objective: Objective, dead_zone: f32, nu: &mut [f32]) {
+    let [least, most] = BOUNDS;
+    let moments = learned.mean.iter().zip(learned.square).zip(learned.cost);
+    let pixels = learned.reflected.iter().zip(learned.brightness);
+    for (nu, (((&mean, &square), &cost), (&reflected, &brightness))) in
+        nu.iter_mut().zip(moments.zip(pixels))
+    {
+        let t = reflected
+            * match objective {
+                Objective::Relative => learned.relative_factor / brightness,
+                Objective::Mse => learned.absolute_factor,
             };
-            // No jumps: particles side by side are looked at together.
-            *nu = if is_known(square, brightness) {
-                efficient
-            } else {
-                *nu
-            };
-        }
+        let count = |spread: f32| t * (spread / cost).sqrt();
+        let roulette = count(square);
+        let splitting = count((square - mean * mean).max(0.0));
+        let drawn_up = roulette * dead_zone;
+        let drawn_down = splitting.min(roulette / dead_zone);
+        let efficient = if drawn_up < 1.0 {
+            drawn_up.max(least)
+        } else {
+            drawn_down.clamp(1.0, most)
+        };
+        // No jumps: particles side by side are looked at together.
+        *nu = if is_known(square, brightness) {
+            efficient
+        } else {
+            *nu
+        };
     }
 }
 
