@@ -4,12 +4,16 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use crc::Crc;
 use serde::{Deserialize, Serialize};
 
 use super::results::Errors;
 use super::{Standing, StudyError};
 use crate::film::{FilmFileError, WholeFile};
 use crate::render::RenderState;
+
+/// What a file ends with, so that one that was damaged is not taken for a study.
+const CHECK: Crc<u32> = Crc::<u32>::new(&crc::CRC_32_ISCSI);
 
 /// Where one competitor stood at a snapshot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,7 +84,9 @@ impl StudyFolder {
             ..Kept::default()
         };
         let kept = match fs::read(folder.kept_path()) {
-            Ok(bytes) => postcard::from_bytes(&bytes).map_err(StudyError::Damaged)?,
+            Ok(bytes) => {
+                postcard::from_bytes_crc32(&bytes, CHECK.digest()).map_err(StudyError::Damaged)?
+            }
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => fresh,
             Err(source) => {
                 let path = folder.kept_path();
@@ -123,7 +129,7 @@ impl StudyFolder {
     /// # Errors
     /// The disk refuses.
     pub fn keep(&self, kept: &Kept) -> Result<(), StudyError> {
-        let bytes = postcard::to_stdvec(kept).map_err(StudyError::Encode)?;
+        let bytes = postcard::to_stdvec_crc32(kept, CHECK.digest()).map_err(StudyError::Encode)?;
         let path = self.kept_path();
         WholeFile::create(&path)?.finish(|writer| {
             writer
@@ -147,4 +153,32 @@ pub fn file_name(competitor: &str) -> String {
         }
     };
     competitor.chars().map(plain).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers that are no others' length are not noticed by the format.
+    #[test]
+    fn a_damaged_file_is_refused() {
+        let home = tempfile::tempdir().unwrap();
+        let open = || StudyFolder::open(home.path(), "this study");
+        let (folder, mut kept) = open().unwrap();
+        kept.reference_cost = Some(ReferenceCost {
+            seconds: 1.5,
+            samples_per_pixel: 64.0,
+        });
+        folder.keep(&kept).unwrap();
+        let (_, read) = open().unwrap();
+        assert_eq!(read.reference_cost, kept.reference_cost);
+        let whole = fs::read(folder.kept_path()).unwrap();
+        for place in 0..whole.len() {
+            let mut damaged = whole.clone();
+            damaged[place] ^= 4;
+            fs::write(folder.kept_path(), damaged).unwrap();
+            let error = open().unwrap_err();
+            assert!(matches!(error, StudyError::Damaged(_)), "{place}: {error}");
+        }
+    }
 }
