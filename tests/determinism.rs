@@ -117,7 +117,14 @@ fn the_number_of_threads_changes_no_bit_of_instances() {
 /// What is learned does not depend on which tile is ready first.
 #[test]
 fn the_number_of_threads_changes_no_bit_of_what_is_learned() {
-    let scene = scene();
+    // Where little is known, and where lamps are seen from everywhere, nothing would be guided.
+    let options = LoadOptions {
+        definitions: vec![("res".into(), "40".into())],
+        models: None,
+    };
+    let path = files::of_project("scenes/cornell-knot.xml");
+    let scene = Scene::load(path, &options).expect("the scene can be loaded");
+    let scene = Arc::new(scene);
     for sampler in SamplerKind::ALL {
         for kind in [StrategyKind::Roulette, StrategyKind::ParticleFilter] {
             let with = |threads, guiding| {
