@@ -3,6 +3,8 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::{CHUNK, VectorLanes};
+
 /// Halvings along each axis that a cell may have at the most.
 const FINEST: u32 = 21;
 
@@ -75,24 +77,54 @@ impl CellTree {
         self.cells
     }
 
-    /// The number of the cell at `position` (world space); outside of the cube, of the nearest one.
+    /// The numbers of the cells at the first `count` of `positions` (world space); outside of the cube, of the nearest ones.
+    ///
+    /// Cells lie scattered in memory. So the arithmetic is one loop over lanes, and what the table says is fetched for all of them before
+    /// it is looked at: nobody waits for the memory of one after the other.
     #[inline(always)]
-    pub fn cell(&self, position: Vec3) -> u32 {
-        let place = (position - Vec3::from(self.corner)) * self.scale;
-        // Conversion saturates, and gives 0 for what is no number.
-        let [x, y, z] = place
-            .to_array()
-            .map(|place| (place as u32).min((1 << FINEST) - 1));
-        let coarse = |place: u32| place >> (FINEST - TABLE_BITS);
-        let start = (coarse(x) << TABLE_BITS | coarse(y)) << TABLE_BITS | coarse(z);
-        let first = self.table[start as usize];
-        if first >= LEAF {
-            return first - LEAF;
+    pub(super) fn cells_at(&self, positions: &VectorLanes<CHUNK>, count: usize) -> [u32; CHUNK] {
+        let mut finest = [[0; CHUNK]; 3];
+        let mut entries = [0; CHUNK];
+        for lane in 0..CHUNK {
+            let place = self.finest(positions.get(lane));
+            entries[lane] = table_entry(place);
+            for (axis, place) in finest.iter_mut().zip(place) {
+                axis[lane] = place;
+            }
         }
-        let mut node = self.nodes[first as usize];
+        let mut cells = entries.map(|entry| self.table[entry as usize]);
+        for (lane, cell) in cells[..count].iter_mut().enumerate() {
+            *cell = self.follow(*cell, finest.map(|axis| axis[lane]));
+        }
+        cells
+    }
+
+    /// Which of the finest cells along each axis `position` lies in; outside of the cube, the nearest.
+    #[inline(always)]
+    fn finest(&self, position: Vec3) -> [u32; 3] {
+        const LAST: f32 = ((1 << FINEST) - 1) as f32;
+        const INTEGERS: f32 = (1 << 23) as f32;
+        let place = (position - Vec3::from(self.corner)) * self.scale;
+        place.to_array().map(|place| {
+            // Conversions to integers by `as` do not vectorise; adding 2^23 leaves the nearest integer in the last bits. What is no number
+            // becomes 0.
+            let place = place - 0.5;
+            let place = if place > 0.0 { place } else { 0.0 };
+            let place = if place < LAST { place } else { LAST };
+            (place + INTEGERS).to_bits() - INTEGERS.to_bits()
+        })
+    }
+
+    /// The cell to which `entry` of the table leads, at a place among the finest cells.
+    #[inline(always)]
+    fn follow(&self, entry: u32, finest: [u32; 3]) -> u32 {
+        if entry >= LEAF {
+            return entry - LEAF;
+        }
+        let mut node = self.nodes[entry as usize];
         while node.halves > 0 {
             let depth = u32::from(node.depth);
-            let along = [x, y, z][(depth % 3) as usize];
+            let along = finest[(depth % 3) as usize];
             let half = along >> (FINEST - 1 - depth / 3) & 1;
             node = self.nodes[(node.halves + half) as usize];
         }
@@ -207,9 +239,25 @@ impl CellTree {
     }
 }
 
+/// The entry of the table at a place among the finest cells.
+#[inline(always)]
+fn table_entry(finest: [u32; 3]) -> u32 {
+    let [x, y, z] = finest.map(|place| place >> (FINEST - TABLE_BITS));
+    (x << TABLE_BITS | y) << TABLE_BITS | z
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    impl CellTree {
+        /// The number of the cell at `position`.
+        pub fn cell(&self, position: Vec3) -> u32 {
+            let mut positions = VectorLanes::default();
+            positions.put(0, position);
+            self.cells_at(&positions, 1)[0]
+        }
+    }
 
     fn unit(halvings: u32) -> CellTree {
         CellTree::new([Vec3::ZERO, Vec3::ONE], halvings)

@@ -94,12 +94,13 @@ impl Sums {
         let radiance = self.means(family, |bin| bin.radiance);
         let square = self.means(family, |bin| bin.square);
         let warp = SquareWarp::new(&radiance, family.count);
+        let guides = warp.variance_left(&radiance, &square) < WORTH_GUIDING;
         Insight {
             mean: filled(self.value, family.value),
             square: filled(self.square, family.square),
             cost: filled(self.cost, family.cost),
-            guides: warp.variance_left(&radiance, &square) < WORTH_GUIDING,
-            warp,
+            guides,
+            warp: if guides { warp } else { SquareWarp::UNIFORM },
         }
     }
 
@@ -189,7 +190,7 @@ impl Experience {
         });
     }
 
-    /// What is to be learned from all that: for every address the number of an insight, counted from 1, and the insights.
+    /// What is to be learned from all that: for every address the number of an insight, and the insights.
     pub(super) fn insights(&self, tree: &CellTree) -> (Vec<u32>, Vec<Insight>) {
         let families = tree.families(TO_FAMILY);
         let mut of_families: std::collections::BTreeMap<(u32, usize), Sums> = Default::default();
@@ -204,10 +205,11 @@ impl Experience {
             sums.add(&self.sums[place as usize - 1], 1.0);
         }
         let mut places = vec![0; self.places.len()];
-        let mut insights = Vec::with_capacity(self.sums.len());
+        let mut insights = Vec::with_capacity(self.sums.len() + 1);
+        insights.push(Insight::NONE);
         for (address, &place) in observed {
-            insights.push(self.sums[place as usize - 1].insight(&of_families[&family(address)]));
             places[address] = insights.len() as u32;
+            insights.push(self.sums[place as usize - 1].insight(&of_families[&family(address)]));
         }
         (places, insights)
     }
@@ -264,9 +266,9 @@ mod tests {
         let (places, insights) = experience.insights(&tree);
         assert_eq!(places.len(), tree.cells() as usize * FRAME_CLASSES);
         assert_eq!(places.iter().filter(|&&place| place > 0).count(), 2);
-        assert_eq!(insights.len(), 2);
+        assert_eq!(insights.len(), 3);
         for (address, value) in [(here, 1.0), (there, 5.0)] {
-            let insight = &insights[places[address as usize] as usize - 1];
+            let insight = &insights[places[address as usize] as usize];
             // Of the only cell of a family, nothing is filled up with something else.
             assert_eq!(insight.mean, value);
             assert_eq!(insight.square, value * value);
@@ -284,7 +286,7 @@ mod tests {
         let mut experience = observed(of_many.chain(of_others));
         experience.refine(&mut tree.clone());
         let (places, insights) = experience.insights(&tree);
-        let mean = |address: u32| insights[places[address as usize] as usize - 1].mean;
+        let mean = |address: u32| insights[places[address as usize] as usize].mean;
         let family = (96.0 + 8.0) / 97.0;
         assert!((mean(few) - (8.0 + OF_FAMILY * family) / (1.0 + OF_FAMILY)).abs() < 1e-5);
         assert!((mean(many) - (96.0 + OF_FAMILY * family) / (96.0 + OF_FAMILY)).abs() < 1e-5);
@@ -308,10 +310,10 @@ mod tests {
         experience.refine(&mut tree.clone());
         let (_, insights) = experience.insights(&tree);
         // u is in bin 19 % 8, v in 19 / 8.
-        let bright = insights[0].warp.density(Bin::of([3.5 / 8.0, 2.5 / 8.0]));
-        let dark = insights[0].warp.density(Bin::of([2.5 / 8.0, 3.5 / 8.0]));
+        let bright = insights[1].warp.density(Bin::of([3.5 / 8.0, 2.5 / 8.0]));
+        let dark = insights[1].warp.density(Bin::of([2.5 / 8.0, 3.5 / 8.0]));
         assert!(bright > 30.0 && dark < 0.5, "{bright} {dark}");
-        assert!(insights[0].guides);
+        assert!(insights[1].guides);
     }
 
     /// What is the same from everywhere, or noise from everywhere.
@@ -361,7 +363,7 @@ mod tests {
         assert_eq!(count_at(0.9), 1.0);
         let (places, insights) = experience.insights(&tree);
         assert_eq!(places.iter().filter(|&&place| place > 0).count(), 5);
-        assert!(insights[..1].iter().all(|insight| insight.mean == 0.5));
+        assert!(insights[1..2].iter().all(|insight| insight.mean == 0.5));
     }
 
     #[test]

@@ -4,6 +4,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::{CellTree, Experience, PixelKnowledge, SquareWarp};
+use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{FRAME_CLASSES, Frame};
 use crate::scene::ImageSize;
 
@@ -18,22 +19,34 @@ const FIRST_HALVINGS: u32 = 3;
 pub struct Insight {
     /// The mean of what a path that goes on there brings back, for albedo 1.
     pub mean: f32,
-    /// The mean of its square.
+    /// The mean of its square; 0 where nothing was observed.
     pub square: f32,
     /// How many rays such a path takes.
     pub cost: f32,
     /// Whether directions gain by being drawn from where it comes.
     pub guides: bool,
-    /// From where, on the square that directions are drawn from.
+    /// From where, on the square that directions are drawn from; uniform where they do not gain.
     pub warp: SquareWarp,
+}
+
+impl Insight {
+    /// Where nothing was observed.
+    pub(super) const NONE: Self = Self {
+        mean: 0.0,
+        square: 0.0,
+        cost: 1.0,
+        guides: false,
+        warp: SquareWarp::UNIFORM,
+    };
 }
 
 /// What was learned; it changes between passes only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Knowledge {
     tree: CellTree,
-    /// The insight of each address, counted from 1; 0 where there is none.
+    /// The number of the insight of each address.
     places: Vec<u32>,
+    /// The first is [`Insight::NONE`].
     insights: Vec<Insight>,
     /// How often it has changed.
     lessons: u32,
@@ -49,7 +62,7 @@ impl Knowledge {
         Self {
             places: vec![0; tree.cells() as usize * FRAME_CLASSES],
             tree,
-            insights: Vec::new(),
+            insights: vec![Insight::NONE],
             lessons: 0,
             pixels: PixelKnowledge::default(),
             film,
@@ -62,19 +75,35 @@ impl Knowledge {
         self.lessons
     }
 
-    /// The address of vertices at `position` whose shading normal is `normal`, unit, on the side that is seen; both in world space.
-    #[inline]
-    pub fn address(&self, position: Vec3, normal: Vec3) -> u32 {
-        self.tree.cell(position) * FRAME_CLASSES as u32 + Frame::class(normal)
+    /// The addresses of the first `count` of some vertices: at `positions`, with the unit shading normals `normals` on the sides that are seen; all in
+    /// world space.
+    #[inline(always)]
+    pub(crate) fn addresses(
+        &self,
+        positions: &VectorLanes<CHUNK>,
+        normals: &VectorLanes<CHUNK>,
+        count: usize,
+    ) -> [u32; CHUNK] {
+        let mut addresses = self.tree.cells_at(positions, count);
+        for (lane, address) in addresses.iter_mut().enumerate() {
+            let class = Frame::class(normals.get(lane));
+            *address = address
+                .wrapping_mul(FRAME_CLASSES as u32)
+                .wrapping_add(class);
+        }
+        addresses
     }
 
-    /// What is known at an address.
+    /// Which insight belongs to an address.
     #[inline(always)]
-    pub fn insight(&self, address: u32) -> Option<&Insight> {
-        match self.places[address as usize] {
-            0 => None,
-            place => Some(&self.insights[place as usize - 1]),
-        }
+    pub fn insight_number(&self, address: u32) -> u32 {
+        self.places[address as usize]
+    }
+
+    /// Insight number `number`.
+    #[inline(always)]
+    pub fn insight(&self, number: u32) -> &Insight {
+        &self.insights[number as usize]
     }
 
     /// What was observed so far, to be added to while this is asked; it is to be [given back](Self::give_back).
@@ -124,6 +153,19 @@ mod tests {
         knowledge.learn();
     }
 
+    impl Knowledge {
+        fn address(&self, position: Vec3, normal: Vec3) -> u32 {
+            let mut lanes = [VectorLanes::default(); 2];
+            lanes[0].put(0, position);
+            lanes[1].put(0, normal);
+            self.addresses(&lanes[0], &lanes[1], 1)[0]
+        }
+
+        fn insight_at(&self, position: Vec3, normal: Vec3) -> &Insight {
+            self.insight(self.insight_number(self.address(position, normal)))
+        }
+    }
+
     fn observation(address: u32, value: f32) -> Observation {
         Observation {
             address,
@@ -139,16 +181,14 @@ mod tests {
         let mut knowledge = Knowledge::nothing([Vec3::ZERO, Vec3::ONE], FILM);
         let place = Vec3::new(0.1, 0.2, 0.3);
         let address = knowledge.address(place, Vec3::X);
-        assert!(knowledge.insight(address).is_none());
+        assert_eq!(*knowledge.insight_at(place, Vec3::X), Insight::NONE);
         teach(&mut knowledge, vec![observation(address, 5.0)]);
-        let mean = |place, normal| {
-            let insight = knowledge.insight(knowledge.address(place, normal));
-            insight.map(|insight| insight.mean)
-        };
-        assert_eq!(mean(place, Vec3::X), Some(5.0));
-        assert_eq!(mean(place + 0.02, Vec3::new(0.8, 0.6, 0.0)), Some(5.0));
-        assert_eq!(mean(place, Vec3::NEG_X), None);
-        assert_eq!(mean(place + 0.5, Vec3::X), None);
+        let mean = |place, normal| knowledge.insight_at(place, normal).mean;
+        assert_eq!(mean(place, Vec3::X), 5.0);
+        assert_eq!(mean(place + 0.02, Vec3::new(0.8, 0.6, 0.0)), 5.0);
+        let nothing = |place, normal| *knowledge.insight_at(place, normal) == Insight::NONE;
+        assert!(nothing(place, Vec3::NEG_X));
+        assert!(nothing(place + 0.5, Vec3::X));
         assert_eq!(knowledge.lessons(), 1);
     }
 
@@ -163,11 +203,7 @@ mod tests {
             let of_some = vec![observation(some, 20.0); 200];
             let of_few = vec![observation(few, 30.0); 2];
             teach(&mut knowledge, [of_many, of_some, of_few].concat());
-            let of = |place| {
-                knowledge
-                    .insight(knowledge.address(place, Vec3::Y))
-                    .unwrap()
-            };
+            let of = |place| knowledge.insight_at(place, Vec3::Y);
             let means = places.map(|place| of(place).mean);
             assert!(means[0] < 10.1 && means[0] > 9.9, "{lesson}: {means:?}");
             // At first it is of the family of the many.
@@ -179,8 +215,8 @@ mod tests {
         knowledge.conclude();
         assert_ne!(knowledge, before);
         for place in places {
-            let address = knowledge.address(place, Vec3::Y);
-            assert_eq!(knowledge.insight(address), before.insight(address));
+            let insight_at = |knowledge: &Knowledge| knowledge.insight_at(place, Vec3::Y).clone();
+            assert_eq!(insight_at(&knowledge), insight_at(&before));
         }
     }
 }

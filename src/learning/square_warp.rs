@@ -153,8 +153,9 @@ impl Steps {
 
     #[inline(always)]
     fn height(&self, part: usize) -> f32 {
-        let end = self.0.get(part + 1).map_or(WHOLE, |&end| u32::from(end));
-        (end - u32::from(self.0[part])) as f32
+        // Behind the last part comes the first, at 0: the whole, which has one digit too many. No part is as high as that.
+        let end = self.0[(part + 1) % SIDE];
+        f32::from(end.wrapping_sub(self.0[part]))
     }
 
     /// The part on which the inverse of the distribution is at `u`, and where in [0, 1).

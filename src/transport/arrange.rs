@@ -13,19 +13,18 @@ use crate::room::{make_room, resize};
 use crate::sampling::Frame;
 use crate::spectrum::Colour;
 
-/// Bits of a key for the place along each axis.
-const PLACE_BITS: u32 = 12;
-/// Bits of a key for the number of the particle in its pixel. Where there are more particles, those beyond stay unsorted.
-const NUMBER_BITS: u32 = 25;
+/// Bits of a key for the place along each axis: with the class, all fit 32 bits.
+const PLACE_BITS: u32 = 9;
 /// Those who have left the scene come last.
-const LEFT: u64 = 7;
+const LEFT: u32 = 7;
 
 /// Where segments are sorted: the memory of one thread.
 pub(super) struct Arrangement<C: Colour> {
     /// Where each segment ends, in world space.
     ends: [Vec<f32>; 3],
     /// Which way what it met faces, or [`LEFT`].
-    classes: Vec<u64>,
+    classes: Vec<u32>,
+    /// The name of each, and its number in its pixel.
     keys: Vec<u64>,
     order: Vec<u32>,
     spare: Segments<C>,
@@ -63,13 +62,11 @@ impl<C: Colour> Arrangement<C> {
             .chunk_by(|one, next| one / samples == next / samples);
         for pixel in pixels {
             let first = order.len();
-            let sorted = first..first + pixel.len().min(1 << NUMBER_BITS);
+            let sorted = first..first + pixel.len();
             let ends = ends.each_ref().map(|axis| &axis[sorted.clone()]);
-            name(ends, &classes[sorted.clone()], keys);
+            name(ends, &classes[sorted], keys);
             keys.sort_unstable();
-            let number = |key: &u64| (first as u64 + (key & ((1 << NUMBER_BITS) - 1))) as u32;
-            order.extend(keys.iter().map(number));
-            order.extend((sorted.end..first + pixel.len()).map(|i| i as u32));
+            order.extend(keys.iter().map(|&key| first as u32 + key as u32));
         }
         spare.gather(segments, order);
         std::mem::swap(spare, segments);
@@ -81,7 +78,7 @@ impl<C: Colour> Arrangement<C> {
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn look<C: Colour>(segments: &Segments<C>, ends: &mut [Vec<f32>; 3], classes: &mut [u64]) {
+fn look<C: Colour>(segments: &Segments<C>, ends: &mut [Vec<f32>; 3], classes: &mut [u32]) {
     let (rays, hits) = (&segments.rays, &segments.hits);
     let lines = rays.origins().into_iter().zip(rays.directions());
     for (axis, (origins, directions)) in ends.iter_mut().zip(lines) {
@@ -96,11 +93,7 @@ fn look<C: Colour>(segments: &Segments<C>, ends: &mut [Vec<f32>; 3], classes: &m
         let normal = Vec3::new(nx[i], ny[i], nz[i]);
         let facing = normal * -1.0_f32.copysign(normal.dot(Vec3::new(dx[i], dy[i], dz[i])));
         let is_hit = geometries[i] != INVALID_GEOMETRY;
-        *class = if is_hit {
-            u64::from(Frame::class(facing))
-        } else {
-            LEFT
-        };
+        *class = if is_hit { Frame::class(facing) } else { LEFT };
     }
 }
 
@@ -110,7 +103,7 @@ fn look<C: Colour>(segments: &Segments<C>, ends: &mut [Vec<f32>; 3], classes: &m
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn name(ends: [&[f32]; 3], classes: &[u64], keys: &mut Vec<u64>) {
+fn name(ends: [&[f32]; 3], classes: &[u32], keys: &mut Vec<u64>) {
     const CELLS: f32 = (1 << PLACE_BITS) as f32;
     let [x, y, z] = ends.map(|axis| {
         let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
@@ -139,17 +132,17 @@ fn name(ends: [&[f32]; 3], classes: &[u64], keys: &mut Vec<u64>) {
         } else {
             x(i) << 2 | y(i) << 1 | z(i)
         };
-        *key = (class << (3 * PLACE_BITS) | place) << NUMBER_BITS | i as u64;
+        *key = u64::from(class << (3 * PLACE_BITS) | place) << 32 | i as u64;
     }
 }
 
-/// Puts two zeros before each of 12 bits.
-fn spread(bits: u32) -> u64 {
-    let mut bits = u64::from(bits);
-    bits = (bits | bits << 16) & 0xff00_00ff;
-    bits = (bits | bits << 8) & 0x0f00_f00f;
-    bits = (bits | bits << 4) & 0xc30c_30c3;
-    (bits | bits << 2) & 0x2_4924_9249
+/// Puts two zeros before each of [`PLACE_BITS`] bits.
+#[inline(always)]
+fn spread(bits: u32) -> u32 {
+    let bits = (bits | bits << 16) & 0x0300_00ff;
+    let bits = (bits | bits << 8) & 0x0300_f00f;
+    let bits = (bits | bits << 4) & 0x030c_30c3;
+    (bits | bits << 2) & 0x0924_9249
 }
 
 #[cfg(test)]
@@ -159,8 +152,8 @@ mod tests {
     #[test]
     fn bits_are_spread() {
         for bits in 0..1 << PLACE_BITS {
-            let bit = |i| u64::from(bits >> i & 1) << (3 * i);
-            assert_eq!(spread(bits), (0..PLACE_BITS).map(bit).sum::<u64>());
+            let bit = |i| (bits >> i & 1) << (3 * i);
+            assert_eq!(spread(bits), (0..PLACE_BITS).map(bit).sum::<u32>());
         }
     }
 
@@ -176,7 +169,7 @@ mod tests {
         let mut keys = Vec::new();
         name(ends.each_ref().map(|axis| &axis[..]), &classes, &mut keys);
         keys.sort_unstable();
-        let order: Vec<u64> = keys.iter().map(|key| key % (1 << NUMBER_BITS)).collect();
+        let order: Vec<u32> = keys.iter().map(|&key| key as u32).collect();
         assert_eq!(order, [4, 0, 2, 3, 6, 1, 5]);
     }
 }

@@ -87,8 +87,10 @@ pub(super) struct Vertices<C: Colour, V: Variant> {
     /// By how much rays start off the surface at the least, in scene units (see [`Instance::clearance`](crate::scene::Instance::clearance)).
     /// Empty where the scene has no instances.
     pub clearance: Vec<f32>,
-    /// Where what was learned is found (see [`Knowledge::address`](crate::learning::Knowledge::address)). Empty where nothing is learned.
+    /// Where observations go (see [`Knowledge::addresses`]). Empty where nothing is learned.
     pub address: Vec<u32>,
+    /// What was learned there (see [`Knowledge::insight`]). Empty likewise.
+    pub insight: Vec<u32>,
     /// The segment that led here. Empty but where the render learns.
     pub segment: Vec<u32>,
     /// How that side scatters light at the path's wavelengths.
@@ -235,6 +237,7 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
             normal: VectorColumn::default(),
             clearance: Vec::new(),
             address: Vec::new(),
+            insight: Vec::new(),
             segment: Vec::new(),
             bsdf: Vec::new(),
         }
@@ -242,13 +245,6 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
 
     pub fn len(&self) -> usize {
         self.path.len()
-    }
-
-    /// Finds out where what was learned about the vertices is found.
-    pub fn find_addresses(&mut self, knowledge: &Knowledge) {
-        make_room(&mut self.address, self.path.len());
-        let address = |i| knowledge.address(self.position.get(i), self.normal.get(i));
-        self.address.extend((0..self.path.len()).map(address));
     }
 
     /// A vertex as next-event estimation sees it.
@@ -289,6 +285,7 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
             self.clearance.clear();
         }
         self.address.clear();
+        self.insight.clear();
         self.segment.clear();
         make_room(&mut self.bsdf, count);
     }

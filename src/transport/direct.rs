@@ -66,8 +66,8 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
         );
         if let Some(knowledge) = knowledge {
             let bsdfs_of_chunk = &vertices.bsdf[chunk.clone()];
-            let addresses = vertices.address[chunk.clone()].iter().copied();
-            if guidance.ask(knowledge, bsdfs_of_chunk.iter().zip(addresses)) {
+            let insights = vertices.insight[chunk.clone()].iter().copied();
+            if guidance.ask(knowledge, bsdfs_of_chunk.iter().zip(insights)) {
                 guidance.mix(bsdfs_of_chunk, &normals, &lights.direction, &mut bsdfs);
             }
         }

@@ -36,8 +36,10 @@ impl<'k> Guidance<'k> {
         }
     }
 
-    /// Asks for what is known at at most [`CHUNK`] `vertices`, with their addresses. Returns whether any of them is guided: without, there
-    /// is nothing to correct.
+    /// Asks for what is known at at most [`CHUNK`] `vertices`, with the numbers of their insights. Returns whether any of them is guided: without,
+    /// there is nothing to correct.
+    ///
+    /// Insights lie scattered in memory, and no jump depends on them, so that they are fetched side by side.
     #[inline(always)]
     pub fn ask<'a, S: SpectrumArithmetic, V: Scattering<S>>(
         &mut self,
@@ -45,15 +47,13 @@ impl<'k> Guidance<'k> {
         vertices: impl Iterator<Item = (&'a V, u32)>,
     ) -> bool {
         let mut is_any_guided = false;
-        for (lane, (vertex, address)) in (0..CHUNK).zip(vertices) {
-            let guide = knowledge.insight(address).filter(|insight| insight.guides);
-            self.share[lane] = 0.0;
-            self.warps[lane] = &SquareWarp::UNIFORM;
-            if let Some(insight) = guide {
-                self.share[lane] = vertex.guided_share();
-                self.warps[lane] = &insight.warp;
-                is_any_guided |= self.share[lane] > 0.0;
-            }
+        for (lane, (vertex, number)) in (0..CHUNK).zip(vertices) {
+            let insight = knowledge.insight(number);
+            let share = vertex.guided_share();
+            let share = if insight.guides { share } else { 0.0 };
+            self.share[lane] = share;
+            self.warps[lane] = &insight.warp;
+            is_any_guided |= share > 0.0;
         }
         is_any_guided
     }
@@ -80,16 +80,17 @@ impl<'k> Guidance<'k> {
         for lane in 0..count.min(CHUNK) {
             let share = self.share[lane];
             let [u, v, choice] = numbers.each_mut().map(|numbers| &mut numbers[lane]);
-            // Where it is mixed, one number decides who draws, and what is left of it chooses the lobe.
-            let is_drawn_from_square = share >= 1.0 || *choice < share;
-            self.is_redirected[lane] = is_drawn_from_square && share < 1.0;
-            if is_drawn_from_square {
-                let (point, density) = self.warps[lane].warp([*u, *v]);
-                [*u, *v] = point;
-                self.density[lane] = density;
-            } else {
-                *choice = ((*choice - share) / (1.0 - share)).clamp(0.0, 1.0 - f32::EPSILON);
-            }
+            // Where it is mixed, one number decides who draws, and what is left of it chooses the lobe. Nobody can foresee who does, so
+            // both are worked out, without a jump.
+            let is_drawn_from_square = (share >= 1.0) | (*choice < share);
+            self.is_redirected[lane] = is_drawn_from_square & (share < 1.0);
+            let (point, density) = self.warps[lane].warp([*u, *v]);
+            let rest = ((*choice - share) / (1.0 - share)).clamp(0.0, 1.0 - f32::EPSILON);
+            let choose =
+                |square: f32, lobes: f32| if is_drawn_from_square { square } else { lobes };
+            [*u, *v] = [choose(point[0], *u), choose(point[1], *v)];
+            self.density[lane] = choose(density, 1.0);
+            *choice = choose(*choice, rest);
         }
     }
 
@@ -104,7 +105,8 @@ impl<'k> Guidance<'k> {
     ) {
         for (lane, vertex) in (0..CHUNK).zip(vertices) {
             let share = self.share[lane];
-            if share >= 1.0 {
+            // Of the matte ones, those that are not guided have the density 1.
+            if share >= 1.0 || share <= 0.0 {
                 samples.pdf[lane] *= self.density[lane];
                 samples.weight[lane] *= 1.0 / self.density[lane];
             } else if self.is_redirected[lane] {
@@ -115,7 +117,7 @@ impl<'k> Guidance<'k> {
                 // So far the weight is the value itself.
                 samples.weight[lane] *= 1.0 / pdf;
                 samples.pdf[lane] = pdf;
-            } else if share > 0.0 {
+            } else {
                 let pdf = samples.pdf[lane];
                 if pdf == f32::INFINITY {
                     samples.weight[lane] *= 1.0 / (1.0 - share);

@@ -30,6 +30,7 @@ mod offset;
 mod pipeline;
 mod recollection;
 mod recorded_rays;
+mod remember;
 mod scatter;
 mod settings;
 mod splat;

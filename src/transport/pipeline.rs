@@ -12,7 +12,9 @@ use super::stages::{Stage, Stopwatch};
 use super::statistics::TraceStatistics;
 use super::variant::Variant;
 use super::walk_stage::Decision;
-use super::{camera, direct, emission, hidden_emitters, intersect, scatter, splat, walk_stage};
+use super::{
+    camera, direct, emission, hidden_emitters, intersect, remember, scatter, splat, walk_stage,
+};
 use crate::embree::Coherence;
 use crate::film::FilmTile;
 use crate::learning::Knowledge;
@@ -172,7 +174,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 job.learns.then(|| self.lineage.youngest()).flatten(),
             );
             if let Some(knowledge) = job.knowledge {
-                self.vertices.find_addresses(knowledge);
+                remember::remember(knowledge, &mut self.vertices);
             }
             stopwatch.lap(Stage::Emission, &mut self.statistics.stages);
             self.statistics.vertices += self.vertices.len() as u64;

@@ -38,11 +38,9 @@ impl Recollection {
             resize(column, vertices.len());
         }
         let moments = mean.iter_mut().zip(&mut *square).zip(&mut *cost);
-        for (((mean, square), cost), &address) in moments.zip(&vertices.address) {
-            [*mean, *square, *cost] = match knowledge.insight(address) {
-                Some(insight) => [insight.mean, insight.square, insight.cost],
-                None => [f32::NAN; 3],
-            };
+        for (((mean, square), cost), &number) in moments.zip(&vertices.insight) {
+            let insight = knowledge.insight(number);
+            [*mean, *square, *cost] = [insight.mean, insight.square, insight.cost];
         }
         for (brightness, path) in brightness.iter_mut().zip(&vertices.path) {
             *brightness = paths.brightness[(path / paths.samples) as usize];

@@ -70,8 +70,8 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         let parents = children.iter().map(|child| child.parent as usize);
         let bsdfs = parents.clone().map(|parent| &vertices.bsdf[parent]);
         let is_guided = knowledge.is_some_and(|knowledge| {
-            let addresses = parents.clone().map(|parent| vertices.address[parent]);
-            guidance.ask(knowledge, bsdfs.clone().zip(addresses))
+            let insights = parents.clone().map(|parent| vertices.insight[parent]);
+            guidance.ask(knowledge, bsdfs.clone().zip(insights))
         });
         if is_guided {
             guidance.warp(children.len(), &mut numbers);

@@ -16,9 +16,9 @@ const MOST_PER_PATH: f64 = 4.0;
 /// throughput took anything away. All of it comes from paths traced before: to a strategy these are numbers fixed in advance.
 #[derive(Clone, Copy, Debug)]
 pub struct Learned<'a> {
-    /// The mean of the value, in radiance; not a number where nothing is known.
+    /// The mean of the value, in radiance.
     pub mean: &'a [f32],
-    /// The mean of its square.
+    /// The mean of its square; 0 where nothing is known.
     pub square: &'a [f32],
     /// The rays that a child takes, those of its descendants included.
     pub cost: &'a [f32],

@@ -1,0 +1,38 @@
+//! Stage, only in renders that learn: finds what was learned where the vertices are.
+
+use multiversion::multiversion;
+
+use super::batch::Vertices;
+use super::variant::Variant;
+use crate::lanes::{CHUNK, VectorLanes};
+use crate::learning::Knowledge;
+use crate::room::make_room;
+use crate::spectrum::Colour;
+
+/// Fills the columns of `vertices` that say where observations go, and what is known there.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+pub(super) fn remember<C: Colour, V: Variant>(
+    knowledge: &Knowledge,
+    vertices: &mut Vertices<C, V>,
+) {
+    let count = vertices.len();
+    make_room(&mut vertices.address, count);
+    make_room(&mut vertices.insight, count);
+    let mut positions = VectorLanes::default();
+    let mut normals = VectorLanes::default();
+    for start in (0..count).step_by(CHUNK) {
+        let chunk = start..count.min(start + CHUNK);
+        positions.load(vertices.position.slices(chunk.clone()));
+        normals.load(vertices.normal.slices(chunk.clone()));
+        let addresses = knowledge.addresses(&positions, &normals, chunk.len());
+        let addresses = &addresses[..chunk.len()];
+        vertices.address.extend_from_slice(addresses);
+        let insights = addresses
+            .iter()
+            .map(|&address| knowledge.insight_number(address));
+        vertices.insight.extend(insights);
+    }
+}
