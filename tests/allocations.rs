@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use cohort::film::{Film, FilmSums};
-use cohort::learning::{Gathering, Knowledge};
+use cohort::learning::{Gathering, Knowledge, Reliance};
 use cohort::render::{Render, Settings};
 use cohort::sampling::{SamplerKind, StreamKey};
 use cohort::scene::{LoadOptions, Scene};
@@ -100,6 +100,7 @@ fn job(pass: u32, knowledge: Option<&Knowledge>) -> TileJob<'_> {
         weight: 1.0,
         knowledge,
         learns: false,
+        reliance: Reliance::ALL,
     }
 }
 
@@ -111,6 +112,7 @@ fn lesson(render: &Render, tracer: &mut dyn TraceBatches) -> Knowledge {
     let mut gathering = Gathering::new(knowledge.take_experience(), 0);
     let job = TileJob {
         learns: true,
+        reliance: Reliance::ALL,
         ..job(8, Some(&knowledge))
     };
     tracer.trace(render.engine(), &job, &mut film.tiles_mut()[0]);

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use cohort::embree::Rays;
 use cohort::film::Film;
+use cohort::learning::Reliance;
 use cohort::sampling::StreamKey;
 use cohort::spectrum::Spectral;
 use cohort::transport::{RecordedRays, TileJob, Tracer};
@@ -64,6 +65,7 @@ pub fn record(scene: &Arc<Scene>, stretches: usize) -> Result<Vec<RaySet>, Box<d
             weight: 1.0,
             knowledge: None,
             learns: false,
+            reliance: Reliance::ALL,
         };
         tracer.record(render.engine(), &job, &mut film.tiles_mut()[tile])
     };

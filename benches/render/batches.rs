@@ -6,6 +6,7 @@
 use std::time::Instant;
 
 use cohort::film::{Film, TILE_SIDE};
+use cohort::learning::Reliance;
 use cohort::sampling::StreamKey;
 use cohort::scene::ImageSize;
 use cohort::spectrum::{Rgb, Spectral};
@@ -78,6 +79,7 @@ impl BatchSize {
                     weight: 1.0,
                     knowledge: None,
                     learns: false,
+                    reliance: Reliance::ALL,
                 };
                 self.tracer.trace(engine, &job, tile);
             }

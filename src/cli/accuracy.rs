@@ -36,6 +36,7 @@ pub fn run(arguments: &AccuracyArgs) -> Result<ExitCode, Box<dyn Error>> {
             options: arguments.strategy.options,
             sampler: arguments.strategy.sampler.unwrap_or(base.sampler),
             guiding: arguments.strategy.guiding.unwrap_or(base.guiding),
+            trial: arguments.strategy.trial.unwrap_or(base.trial),
             ..base
         };
         let axes = if arguments.settings.is_empty() {

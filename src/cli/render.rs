@@ -72,6 +72,10 @@ pub struct RenderArgs {
     #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
     guiding: Switch,
 
+    /// Whether what was learned is tried against doing without, and left aside where it does not pay
+    #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
+    trial: Switch,
+
     /// How direct light is found
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Direct::NextEvent)]
     direct: Direct,
@@ -225,6 +229,7 @@ impl RenderArgs {
             },
             sampler: self.sampler,
             guiding: self.guiding.is_on(),
+            trial: self.trial.is_on(),
             direct_light: match self.direct {
                 Direct::NextEvent => DirectLight::NextEvent,
                 Direct::Off => DirectLight::Off,

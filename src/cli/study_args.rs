@@ -85,6 +85,10 @@ pub struct StudyArgs {
     #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
     guiding: Switch,
 
+    /// Whether what was learned is tried against doing without, and left aside where it does not pay
+    #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
+    trial: Switch,
+
     /// Measures beside MSE and relative MSE
     #[arg(long, value_name = "NAME", value_enum, value_delimiter = ',')]
     metrics: Vec<Metric>,
@@ -143,6 +147,7 @@ impl StudyArgs {
             },
             sampler: self.sampler,
             guiding: self.guiding.is_on(),
+            trial: self.trial.is_on(),
             ..EntrySettings::default()
         };
         let plan = Plan {

@@ -44,6 +44,15 @@ impl FilmTile {
         }
     }
 
+    /// The same tile without samples, whose pixels add up in `sums`.
+    pub fn without_samples(&self, sums: FilmSums) -> Self {
+        Self {
+            pixels: TilePixels::new(sums, self.size.pixels()),
+            second_moments: None,
+            ..*self
+        }
+    }
+
     /// Column and row on the film of the pixel with this index in [`Self::pixels`].
     #[inline]
     pub fn position(&self, index: usize) -> (u32, u32) {
@@ -92,10 +101,15 @@ impl Film {
                     == second_moments.then_some(count)
         };
         self.size == size
-            && self.tiles.len() == corners(size).count()
+            && self.tiles.len() == Self::tile_count(size)
             && corners(size)
                 .zip(&self.tiles)
                 .all(|(corner, tile)| is_at(tile, corner))
+    }
+
+    /// How many tiles a film of `size` has.
+    pub fn tile_count(size: ImageSize) -> usize {
+        corners(size).count()
     }
 
     /// Size in pixels.

@@ -10,6 +10,7 @@
 //! - [`gathering`]: observations of tiles, in their order
 //! - [`observation`]: what is observed
 //! - [`pixels`]: how bright the image is
+//! - [`reliance`]: which of it a render goes by
 //! - [`square_warp`]: a histogram that warps the unit square from which directions are drawn
 //! - [`knowledge`]: what is asked while paths are traced
 
@@ -19,6 +20,7 @@ pub mod gathering;
 pub mod knowledge;
 pub mod observation;
 pub mod pixels;
+pub mod reliance;
 pub mod square_warp;
 
 pub use cell_tree::CellTree;
@@ -27,4 +29,5 @@ pub use gathering::{Gathering, Observations};
 pub use knowledge::{Insight, Knowledge};
 pub use observation::{Observation, PixelObservation};
 pub use pixels::PixelKnowledge;
+pub use reliance::Reliance;
 pub use square_warp::{Bin, SquareWarp};

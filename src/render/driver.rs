@@ -6,11 +6,12 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
+use super::trial::Trial;
 use super::watch::{Watch, unpoisoned};
 use super::{Budget, Ended, Observer, Outcome, RenderState, Schedule, Settings, StopFlag, memory};
 use crate::embree::EmbreeError;
 use crate::film::Film;
-use crate::learning::{Experience, Gathering, Knowledge};
+use crate::learning::{Experience, Gathering, Knowledge, Reliance};
 use crate::sampling::StreamKey;
 use crate::scene::{Emitter, Scene};
 use crate::transport::{
@@ -146,6 +147,14 @@ impl Render {
         self.settings.guiding || self.engine.strategy().learns()
     }
 
+    /// What is to be tried of what it learns, if anything is.
+    fn trial(&self) -> Option<Trial> {
+        let size = self.engine.scene().film.crop.size;
+        let counts = self.engine.strategy().learns();
+        let is_wanted = self.settings.trial && self.learns();
+        is_wanted.then(|| Trial::new(Film::tile_count(size), counts, self.settings.guiding))
+    }
+
     /// Whether the scene asks for the second moments of its samples.
     fn asks_for_moments(&self) -> bool {
         self.engine.scene().integrator.moments.is_some()
@@ -219,8 +228,22 @@ impl Render {
             state.knowledge.is_some(),
             state.film.size().pixels(),
         );
+        let trial = self.trial();
         let ended = self.pool.install(|| {
             loop {
+                let is_due = |trial: &&Trial| {
+                    !state.pass.is_under_way()
+                        && !schedule.teaches(state.pass.before)
+                        && trial.is_due(state.pass.before, self.settings.budget)
+                };
+                if state.reliance.is_none()
+                    && let Some(trial) = trial.as_ref().filter(is_due)
+                {
+                    trial.advance(&self.engine, state, &self.tracers, &watch);
+                    if let Some(ended) = watch.ended() {
+                        break ended;
+                    }
+                }
                 if !state.pass.plan(schedule, until) {
                     break Ended::Complete;
                 }
@@ -257,6 +280,7 @@ impl Render {
         };
         let gathering = Mutex::new(Gathering::new(experience, first));
         let knowledge = state.knowledge.as_ref();
+        let reliance = state.reliance.unwrap_or(Reliance::ALL);
         let film = state.film.size();
         let tiles = state.film.tiles_mut().iter_mut().zip(&mut pass.done);
         let missing = tiles.enumerate().filter(|(_, (_, done))| !**done);
@@ -281,6 +305,7 @@ impl Render {
                     weight,
                     knowledge,
                     learns,
+                    reliance,
                 };
                 watch.trace(&self.engine, &job, tile, tracer);
                 *done = true;

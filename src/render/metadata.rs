@@ -43,6 +43,9 @@ pub fn metadata(render: &Render, outcome: &Outcome) -> Vec<(String, String)> {
         "intersection-share",
         format!("{:.3}", statistics.intersection_share()),
     );
+    if let Some(reliance) = outcome.reliance {
+        add("relied-on", reliance.to_string());
+    }
     add("longest-path", statistics.deepest.to_string());
     let dropped = statistics.dropped;
     add("dropped.nan", dropped.nan.to_string());
@@ -73,6 +76,10 @@ pub fn what_is_computed(render: &Render) -> Vec<(String, String)> {
     add(
         "guiding",
         if settings.guiding { "on" } else { "off" }.to_owned(),
+    );
+    add(
+        "trial",
+        if settings.trial { "on" } else { "off" }.to_owned(),
     );
     add("colour", settings.colour.name().into());
     add("film-sums", settings.film_sums.name().into());

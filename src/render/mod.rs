@@ -7,6 +7,7 @@ mod progress;
 mod schedule;
 mod settings;
 mod state;
+mod trial;
 mod watch;
 
 pub use driver::{MAX_THREADS, Render, RenderError};

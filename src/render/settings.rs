@@ -91,6 +91,8 @@ pub struct Settings {
     pub sampler: SamplerKind,
     /// Whether directions are guided by what was learned of where light comes from.
     pub guiding: bool,
+    /// Whether what was learned is tried against doing without, and left aside where it does not pay.
+    pub trial: bool,
     /// How direct light is found.
     pub direct_light: DirectLight,
     /// Most segments of a path, camera ray included; `None` takes what the scene says.
@@ -114,6 +116,7 @@ impl Default for Settings {
             film_sums: FilmSums::default(),
             sampler: SamplerKind::default(),
             guiding: false,
+            trial: false,
             direct_light: DirectLight::default(),
             max_depth: None,
             robust: false,

@@ -4,9 +4,10 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use super::trial::Finding;
 use super::{Budget, Schedule};
 use crate::film::Film;
-use crate::learning::Knowledge;
+use crate::learning::{Knowledge, Reliance};
 use crate::transport::TraceStatistics;
 
 /// A render under way: what [`Render::advance`](super::Render::advance) goes on from.
@@ -19,6 +20,10 @@ pub struct RenderState {
     pub(super) film: Film,
     /// Of a render that learns.
     pub(super) knowledge: Option<Knowledge>,
+    /// What was found by trying it so far.
+    pub(super) findings: Vec<Option<Finding>>,
+    /// On which of it the render relies, once it has tried.
+    pub(super) reliance: Option<Reliance>,
     pub(super) pass: Pass,
     pub(super) statistics: TraceStatistics,
     pub(super) duration: Duration,
@@ -73,6 +78,8 @@ pub struct Outcome {
     pub duration: Duration,
     /// Seed of all random streams.
     pub seed: u64,
+    /// On which of what it learned it relied in the end; `None` where that was not tried.
+    pub reliance: Option<Reliance>,
     /// Why it ended.
     pub ended: Ended,
 }
@@ -90,6 +97,8 @@ impl RenderState {
             },
             film,
             knowledge,
+            findings: Vec::new(),
+            reliance: None,
             statistics: TraceStatistics::default(),
             duration: Duration::ZERO,
         }
@@ -122,17 +131,22 @@ impl RenderState {
             statistics: self.statistics,
             duration: self.duration,
             seed: self.seed,
+            reliance: self.reliance,
             ended,
         }
     }
 }
 
 impl Pass {
+    /// Whether some of it is done.
+    pub fn is_under_way(&self) -> bool {
+        self.done.contains(&true)
+    }
+
     /// Settles how many samples the pass takes, unless it is under way. Returns whether there is anything to do.
     pub fn plan(&mut self, schedule: Schedule, until: Budget) -> bool {
         let samples = schedule.samples(self.index, self.before, until);
-        let under_way = self.done.contains(&true);
-        if !under_way {
+        if !self.is_under_way() {
             self.samples = samples;
         }
         samples > 0

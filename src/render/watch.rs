@@ -82,15 +82,46 @@ impl<'a> Watch<'a> {
         tile: &mut FilmTile,
         tracer: &mut dyn TraceBatches,
     ) {
+        let counted = self.time(engine, job, tile, tracer);
+        self.count(counted);
+    }
+
+    /// Traces samples that do not become part of the image: their rays and their time count, their camera paths do not. Returns how many rays there were.
+    pub fn trace_aside(
+        &self,
+        engine: &Engine,
+        job: &TileJob,
+        tile: &mut FilmTile,
+        tracer: &mut dyn TraceBatches,
+    ) -> u64 {
+        let counted = TraceStatistics {
+            camera_paths: 0,
+            ..self.time(engine, job, tile, tracer)
+        };
+        self.count(counted);
+        counted.all_rays()
+    }
+
+    fn time(
+        &self,
+        engine: &Engine,
+        job: &TileJob,
+        tile: &mut FilmTile,
+        tracer: &mut dyn TraceBatches,
+    ) -> TraceStatistics {
         let paths = tile.pixels.count() as u64 * u64::from(job.samples);
         let _flushed = flush_denormals_to_zero();
         let start = Instant::now();
         tracer.trace(engine, job, tile);
         self.path_cost
             .store(start.elapsed().as_nanos() as u64 / paths, Ordering::Relaxed);
+        tracer.take_statistics()
+    }
+
+    fn count(&self, counted: TraceStatistics) {
         let total = {
             let mut total = unpoisoned(&self.statistics);
-            *total += tracer.take_statistics();
+            *total += counted;
             *total
         };
         self.observe(&total);

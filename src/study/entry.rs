@@ -26,6 +26,8 @@ pub struct EntrySettings {
     pub sampler: SamplerKind,
     /// Whether directions are guided by what was learned.
     pub guiding: bool,
+    /// Whether what was learned is tried against doing without.
+    pub trial: bool,
     /// How direct light is found.
     pub direct_light: DirectLight,
     /// Most segments of a path, camera ray included; `None` takes what the scene says.
@@ -48,6 +50,7 @@ impl Default for EntrySettings {
             colour: settings.colour,
             sampler: settings.sampler,
             guiding: settings.guiding,
+            trial: settings.trial,
             direct_light: settings.direct_light,
             max_depth: settings.max_depth,
             robust: settings.robust,
@@ -77,6 +80,7 @@ impl EntrySettings {
             colour: self.colour,
             sampler: self.sampler,
             guiding: self.guiding,
+            trial: self.trial,
             direct_light: self.direct_light,
             max_depth: self.max_depth,
             robust: self.robust,
@@ -100,6 +104,8 @@ pub struct StrategySpec {
     pub sampler: Option<SamplerKind>,
     /// Whether its directions are to be guided, if that is not as with the others.
     pub guiding: Option<bool>,
+    /// Whether what it learns is to be tried, likewise.
+    pub trial: Option<bool>,
 }
 
 /// What is wrong with a written strategy.
@@ -128,7 +134,7 @@ pub enum SpecError {
     },
     /// A setting that no strategy has.
     #[error(
-        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, rule, objective, n-max, population, counts, sampler and guiding"
+        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, rule, objective, n-max, population, counts, sampler, guiding and trial"
     )]
     Unknown(String),
 }
@@ -142,6 +148,7 @@ impl FromStr for StrategySpec {
         let mut options = StrategyOptions::default();
         let mut sampler = None;
         let mut guiding = None;
+        let mut trial = None;
         for part in parts {
             let (name, value) = part
                 .split_once('=')
@@ -156,6 +163,7 @@ impl FromStr for StrategySpec {
                 "population" => options.population = Some(value.parse()?),
                 "sampler" => sampler = Some(value.parse()?),
                 "guiding" => guiding = Some(on_or_off("guiding", value)?),
+                "trial" => trial = Some(on_or_off("trial", value)?),
                 "counts" => options.counts = Some(value.parse()?),
                 _ => return Err(SpecError::Unknown(name.to_owned())),
             }
@@ -167,6 +175,7 @@ impl FromStr for StrategySpec {
             options,
             sampler,
             guiding,
+            trial,
         })
     }
 }
@@ -207,6 +216,8 @@ mod tests {
         assert_eq!(sobol.sampler, Some(SamplerKind::Sobol));
         let guided: StrategySpec = "roulette:guiding=on".parse().unwrap();
         assert_eq!((guided.guiding, sobol.guiding), (Some(true), None));
+        let tried: StrategySpec = "ears:trial=on".parse().unwrap();
+        assert_eq!((tried.trial, guided.trial), (Some(true), None));
         let plain: StrategySpec = "roulette".parse().unwrap();
         assert_eq!(plain.options, StrategyOptions::default());
     }

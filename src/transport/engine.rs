@@ -10,7 +10,7 @@ use super::emission_table::EmissionTable;
 use super::settings::TransportSettings;
 use crate::embree::Version;
 use crate::film::FilterSampler;
-use crate::learning::Knowledge;
+use crate::learning::{Knowledge, Reliance};
 use crate::sampling::{SamplerKind, StreamKey};
 use crate::scene::{CameraView, Emitter, Instance, LightChoice, Parallelogram, Scene};
 use crate::spectrum::Colour;
@@ -51,6 +51,22 @@ pub struct TileJob<'k> {
     pub knowledge: Option<&'k Knowledge>,
     /// Whether what is traced is to be learned from.
     pub learns: bool,
+    /// Which of the knowledge counts.
+    pub reliance: Reliance,
+}
+
+impl<'k> TileJob<'k> {
+    /// What is known, if the strategy is told.
+    pub(super) fn knowledge_for_counts(&self, engine: &Engine) -> Option<&'k Knowledge> {
+        let is_told = engine.strategy.learns() && self.reliance.counts;
+        self.knowledge.filter(|_| is_told)
+    }
+
+    /// What is known, if directions are guided by it.
+    pub(super) fn knowledge_for_guiding(&self, engine: &Engine) -> Option<&'k Knowledge> {
+        let guides = engine.settings.guiding && self.reliance.guiding;
+        self.knowledge.filter(|_| guides)
+    }
 }
 
 impl Engine {

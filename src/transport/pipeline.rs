@@ -97,7 +97,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             &mut self.segments,
         );
         stopwatch.lap(Stage::Camera, &mut self.statistics.stages);
-        if let Some(knowledge) = job.knowledge {
+        if let Some(knowledge) = job.knowledge_for_counts(engine) {
             let width = engine.scene().film.crop.size.width;
             self.paths.find_brightness(knowledge, tile, width);
         }
@@ -129,7 +129,9 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
         let max_depth = engine.settings.max_depth.unwrap_or(u32::MAX);
         let next_event = engine.settings.direct_light == DirectLight::NextEvent
             && !engine.scene.emitters.is_empty();
-        let guide = job.knowledge.filter(|_| engine.settings.guiding);
+        let guide = job.knowledge_for_guiding(engine);
+        let memory = job.knowledge_for_counts(engine);
+        let remembers = job.learns || guide.is_some() || memory.is_some();
         for depth in 0..max_depth {
             if self.segments.len() == 0 {
                 return;
@@ -173,7 +175,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 depth,
                 job.learns.then(|| self.lineage.youngest()).flatten(),
             );
-            if let Some(knowledge) = job.knowledge {
+            if let Some(knowledge) = job.knowledge.filter(|_| remembers) {
                 remember::remember(knowledge, &mut self.vertices);
             }
             stopwatch.lap(Stage::Emission, &mut self.statistics.stages);
@@ -203,7 +205,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             }
             self.statistics.walk += walk_stage::decide(
                 engine.strategy(),
-                job.knowledge,
+                memory,
                 &self.paths,
                 &self.vertices,
                 depth,

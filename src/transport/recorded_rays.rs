@@ -17,6 +17,7 @@ mod tests {
     use std::error::Error;
 
     use crate::film::{Film, FilmSums};
+    use crate::learning::Reliance;
     use crate::sampling::StreamKey;
     use crate::spectrum::Rgb;
     use crate::{LoadOptions, Render, Scene, Settings};
@@ -44,6 +45,7 @@ mod tests {
             weight: 1.0,
             knowledge: None,
             learns: false,
+            reliance: Reliance::ALL,
         };
         let mut tracer = Tracer::<Rgb>::default();
 

@@ -19,7 +19,7 @@ pub(super) struct Decision {
     pub offspring: Offspring,
 }
 
-/// Shows the vertices to the strategy as a population, with what is known of them if it asks, and lets it decide.
+/// Shows the vertices to the strategy as a population, with what is known of them by `knowledge`, and lets it decide.
 ///
 /// `depth` is the number of scattering events before these vertices.
 pub(super) fn decide<C: Colour, V: Variant>(
@@ -47,11 +47,9 @@ pub(super) fn decide<C: Colour, V: Variant>(
         paths: paths.radiance.len() as u32,
         depth,
         points: sampler.decisions(&vertices.point),
-        learned: knowledge
-            .filter(|_| strategy.learns())
-            .and_then(|knowledge| {
-                recollection.recall(knowledge, paths, vertices, &particles.reflected)
-            }),
+        learned: knowledge.and_then(|knowledge| {
+            recollection.recall(knowledge, paths, vertices, &particles.reflected)
+        }),
     };
     strategy.resample(&population, sampler.stream(), offspring)
 }

@@ -52,6 +52,10 @@ impl Strategy for Ears {
         true
     }
 
+    fn objective(&self) -> Objective {
+        self.objective
+    }
+
     fn expected_counts(&self, population: &Population, nu: &mut [f32]) {
         for (index, nu) in nu.iter_mut().enumerate() {
             *nu = before_lessons(population, index);

@@ -12,7 +12,7 @@
 //! v is what a child brings back, c the rays that it takes, I the brightness of the pixel. A dead zone leaves particles alone from 2/3 to 3/2, and draws
 //! other counts to 1 by the same factor. No count above 1 is more than Var\[v\] instead of E\[v^2\] would make it, for copies of what does not vary are
 //! worth nothing; nu is kept from 0.02 to 20, and all particles together get at most four children for each camera path. Before anything is learned,
-//! nu is W a.
+//! paths survive by half where their importance is below a tenth.
 //!
 //! **By importance** (`rule` `importance`), as the paper has it, the resampling equalises the importance:
 //!
@@ -47,7 +47,7 @@ use std::str::FromStr;
 
 use serde::Serialize;
 
-use super::learned::bound;
+use super::learned::{before_lessons, bound};
 use super::{ExpectedCount, Objective, Population, Rounding, Scope, SettingError, Strategy};
 
 /// By what factor the range is wider in which particles are left alone.
@@ -200,14 +200,21 @@ impl Strategy for ParticleFilter {
         self.objective.is_some()
     }
 
+    fn objective(&self) -> Objective {
+        self.objective.unwrap_or_default()
+    }
+
     fn expected_counts(&self, population: &Population, nu: &mut [f32]) {
-        let numbers = population.importance.iter().zip(population.albedo);
-        for (nu, (w, a)) in nu.iter_mut().zip(numbers) {
-            *nu = self.n_max * w * a;
-        }
         let Some(objective) = self.objective else {
+            let numbers = population.importance.iter().zip(population.albedo);
+            for (nu, (w, a)) in nu.iter_mut().zip(numbers) {
+                *nu = self.n_max * w * a;
+            }
             return;
         };
+        for (index, nu) in nu.iter_mut().enumerate() {
+            *nu = before_lessons(population, index);
+        }
         if let Some(learned) = &population.learned {
             learned.efficient_counts(objective, DEAD_ZONE, nu);
         }

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::Serialize;
 
-use super::{Offspring, Population, Rounding, SettingError, WalkReport};
+use super::{Objective, Offspring, Population, Rounding, SettingError, WalkReport};
 use crate::sampling::RandomStream;
 
 /// Decides how many children each particle of a population gets.
@@ -39,6 +39,11 @@ pub trait Strategy: Send + Sync + Debug {
     /// Whether it asks for what the render has [learned](Population::learned).
     fn learns(&self) -> bool {
         false
+    }
+
+    /// Which error of the image it makes small, if it can choose.
+    fn objective(&self) -> Objective {
+        Objective::Relative
     }
 
     /// Writes the wished-for nu of every particle into `nu`.
