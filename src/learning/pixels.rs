@@ -11,6 +11,13 @@ const REACH: usize = 2;
 /// No pixel is taken to be darker than this part of the mean of all.
 const DARKEST: f32 = 0.01;
 
+/// Of so many pixels at the most, those that vary most, nothing is learned of what variance costs: a single path that found a rare bright light would
+/// speak for the whole image (Rath et al. 2022, the authors' implementation).
+const OUTLIERS: usize = 10;
+
+/// In small images, one pixel of so many.
+const FEWEST_PER_OUTLIER: usize = 100;
+
 /// The brightness of every pixel, and what relative variance costs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PixelKnowledge {
@@ -50,27 +57,22 @@ impl PixelKnowledge {
             });
         let darkest = DARKEST * all.mean();
         let brightness: Vec<f32> = both.iter().map(|sum| sum.mean().max(darkest)).collect();
-        let (mut rays, mut relative, mut absolute) = (0.0, 0.0, 0.0);
+        let mut relative = Vec::with_capacity(pixels.len());
+        let mut absolute = Vec::with_capacity(pixels.len());
         for (pixel, &brightness) in pixels.iter().zip(&brightness) {
             let brightness = f64::from(brightness);
             if pixel.paths > 0 && brightness > 0.0 {
                 let variance = f64::from(pixel.paths) * pixel.variance(brightness);
-                absolute += variance;
-                relative += variance / (brightness * brightness);
-                rays += f64::from(pixel.rays);
+                let rays = f64::from(pixel.rays);
+                absolute.push(Price { variance, rays });
+                let variance = variance / (brightness * brightness);
+                relative.push(Price { variance, rays });
             }
         }
-        let factor = |variance: f64| {
-            if variance > 0.0 {
-                (rays / variance).sqrt() as f32
-            } else {
-                1.0
-            }
-        };
         Self {
             brightness,
-            relative_factor: factor(relative),
-            absolute_factor: factor(absolute),
+            relative_factor: factor(&mut relative),
+            absolute_factor: factor(&mut absolute),
         }
     }
 
@@ -88,6 +90,30 @@ impl PixelKnowledge {
     /// The square root of the mean cost of a path, in rays, over the mean of its variance.
     pub fn absolute_factor(&self) -> f32 {
         self.absolute_factor
+    }
+}
+
+/// What the paths of a pixel leave in variance, and what they take in rays.
+#[derive(Clone, Copy, Debug)]
+struct Price {
+    variance: f64,
+    rays: f64,
+}
+
+/// The square root of all rays over all variance, without those of the pixels that vary most; 1 where nothing varies.
+fn factor(prices: &mut [Price]) -> f32 {
+    let outliers = OUTLIERS.min(prices.len() / FEWEST_PER_OUTLIER);
+    let kept = prices.len() - outliers;
+    if outliers > 0 {
+        prices.select_nth_unstable_by(kept, |one, other| one.variance.total_cmp(&other.variance));
+    }
+    let kept = &prices[..kept];
+    let sum = |number: fn(&Price) -> f64| kept.iter().map(number).sum::<f64>();
+    let [variance, rays] = [sum(|price| price.variance), sum(|price| price.rays)];
+    if variance > 0.0 {
+        (rays / variance).sqrt() as f32
+    } else {
+        1.0
     }
 }
 
@@ -179,6 +205,23 @@ mod tests {
         assert!((brighter.relative_factor() - knowledge.relative_factor()).abs() < 1e-5);
         let dearer = brighter.absolute_factor() * 1000.0;
         assert!((dearer - knowledge.absolute_factor()).abs() < 1e-4);
+    }
+
+    /// Ten fireflies among a thousand pixels, or eleven.
+    #[test]
+    fn a_few_bright_paths_do_not_speak_for_the_image() {
+        let prices = |fireflies: usize| {
+            let price = |i| Price {
+                variance: if i < fireflies { 1e9 } else { 4.0 },
+                rays: 9.0,
+            };
+            (0..1000).map(price).collect::<Vec<_>>()
+        };
+        assert_eq!(factor(&mut prices(0)), 1.5);
+        assert_eq!(factor(&mut prices(10)), 1.5);
+        assert!(factor(&mut prices(11)) < 0.01);
+        assert!(factor(&mut prices(1)[..99]) < 0.01);
+        assert_eq!(factor(&mut []), 1.0);
     }
 
     #[test]

@@ -11,7 +11,8 @@
 //! ```
 //!
 //! v is what a child brings back, c the rays that it takes, I the brightness of the pixel. Ending a path is decided by the second moment,
-//! for it risks everything; splitting it by the variance, for copies share their mean: between them lies a range in which a path goes on alone.
+//! for it risks everything; splitting it by the variance, for copies share their mean: between them lies a range in which a path goes on alone. The ten
+//! pixels that vary most do not count for the image's cost and variance, as in the authors' implementation.
 //!
 //! All particles together get at most four children for each camera path. Before anything is learned, paths survive by half where their importance is below a tenth.
 //!
