@@ -8,10 +8,11 @@ use crate::sampling::SamplerKind;
 const FULL_PASS: u32 = 16;
 
 /// The most samples per pixel from which a render learns, and the fewest.
-const LESSONS: [u32; 2] = [32, 8];
+const LESSONS: [u32; 2] = [32, 2];
 
-/// With so many camera paths, an image of many pixels has learned enough.
-const TEACHING_PATHS: usize = 1 << 21;
+/// With so many camera paths, an image of many pixels has learned enough. Four times as many are worth no more by rays, and what they teach takes longer
+/// to look up; half as many are too few (`docs/strategies.md`).
+const TEACHING_PATHS: usize = 1 << 19;
 
 /// The weight of a sample of which others learn, for it has not learned enough itself.
 const LESSON_WEIGHT: f64 = 0.5;
@@ -61,12 +62,6 @@ impl Schedule {
             _ if !starts_small => full,
             0 => 1,
             _ => 1 << (pass - 1).min(31),
-        };
-        // The last is to weigh no more than all before it, even if all those are lessons.
-        let most = if self.learns && !self.teaches(before) && before > 1 {
-            most.min(u32::try_from(before / 2).unwrap_or(u32::MAX))
-        } else {
-            most
         };
         full.min(most)
             .min(missing(self.budget, before))
@@ -185,7 +180,7 @@ mod tests {
                 samples
             })
             .collect();
-        assert_eq!(passes, [1, 1, 2, 4, 8, 8, 12, 14]);
+        assert_eq!(passes, [1, 1, 2, 4, 8, 16, 16, 2]);
         assert_eq!([8, 16].map(|before| schedule.weight(before)), [0.5, 1.0]);
     }
 
@@ -196,7 +191,7 @@ mod tests {
             (0..).find(|&before| !schedule.teaches(before)).unwrap_or(0)
         };
         let timed = [1, 256, 400, 4096].map(|side| lessons(TIME, side));
-        assert_eq!(timed, [32, 32, 13, 8]);
+        assert_eq!(timed, [32, 8, 3, 2]);
         let counted = [3, 64, 4096].map(|samples| lessons(spp(samples), 1));
         assert_eq!(counted, [0, 16, 32]);
     }

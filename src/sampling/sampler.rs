@@ -110,7 +110,8 @@ pub struct Sampler {
     kind: SamplerKind,
     stream: RandomStream,
     /// What the sequences of a pixel depend on beside it.
-    key: [u32; 4],
+    key: [u32; 3],
+    lessons: u32,
     before: u64,
 }
 
@@ -118,12 +119,14 @@ impl Sampler {
     /// The numbers of the batch of `key`, where each pixel has had `before` samples in all passes before.
     ///
     /// Passes go on with the same sequences, until there is another of the `lessons` that the render learns from what it has traced: what was learned
-    /// must not depend on numbers with which it is used.
+    /// must not depend on numbers with which it is used. Only what a camera path starts with goes on through all lessons, for nothing that was learned
+    /// has a say in it: whatever it is, the estimate from there on is right in the mean.
     pub fn new(kind: SamplerKind, key: StreamKey, before: u64, lessons: u32) -> Self {
         Self {
             kind,
             stream: RandomStream::new(key),
-            key: [key.seed as u32, (key.seed >> 32) as u32, key.tile, lessons],
+            key: [key.seed as u32, (key.seed >> 32) as u32, key.tile],
+            lessons,
             before,
         }
     }
@@ -137,12 +140,18 @@ impl Sampler {
     /// Who numbers the particles of each pixel anew at every vertex, if they do not keep their points: for a sampler that wants them
     /// [sorted](SamplerKind::ArrayQmc).
     pub fn ranks(&self) -> Option<Ranks> {
-        (self.kind == SamplerKind::ArrayQmc).then(|| Ranks::new(self.key, self.before))
+        let key = [self.key[0], self.key[1], self.key[2], self.lessons];
+        (self.kind == SamplerKind::ArrayQmc).then(|| Ranks::new(key, self.before))
     }
 
-    /// The point of sample number `sample` of this pass of pixel number `pixel` of the batch's tile.
-    pub fn point(&self, pixel: u32, sample: u32) -> SequencePoint {
+    /// The point with which sample number `sample` of this pass of pixel number `pixel` of the batch's tile starts: for [`Use::Camera`] and [`Use::Lens`].
+    pub fn camera_point(&self, pixel: u32, sample: u32) -> SequencePoint {
         SequencePoint::new(self.key, pixel, self.before + u64::from(sample))
+    }
+
+    /// The point with which the path that starts with this `camera_point` goes on.
+    pub fn path_point(&self, camera_point: SequencePoint) -> SequencePoint {
+        camera_point.of_lesson(self.lessons)
     }
 
     fn points(&self, what: Use) -> Points {
@@ -268,7 +277,7 @@ mod tests {
     fn independent_numbers_are_the_streams() {
         let mut sampler = Sampler::new(SamplerKind::Independent, KEY, 0, 0);
         let mut stream = RandomStream::new(KEY);
-        let point = sampler.point(4, 5);
+        let point = sampler.camera_point(4, 5);
         let drawn: [f32; 3] = numbers(&mut sampler, point, Use::Camera);
         assert_eq!(drawn, [(); 3].map(|()| stream.uniform()));
         assert!(sampler.decisions(&[point]).is_none() && sampler.ranks().is_none());
@@ -280,7 +289,7 @@ mod tests {
     fn uses_do_not_share_dimensions() {
         for kind in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
             let mut sampler = Sampler::new(kind, KEY, 5, 0);
-            let point = sampler.point(4, 0);
+            let point = sampler.camera_point(4, 0);
             let mut all: Vec<f32> = Vec::new();
             for what in [
                 Use::Camera,
@@ -313,7 +322,7 @@ mod tests {
     #[test]
     fn decisions_have_32_random_bits() {
         let mut sampler = Sampler::new(SamplerKind::Sobol, KEY, 0, 0);
-        let point = sampler.point(4, 5);
+        let point = sampler.camera_point(4, 5);
         let drawn = [(); 4096].map(|()| decide(&mut sampler, point, 0));
         let low: std::collections::BTreeSet<u32> = drawn.iter().map(|bits| bits & 511).collect();
         assert!(low.len() > 500, "{}", low.len());
@@ -328,7 +337,7 @@ mod tests {
             let key = StreamKey { pass, ..KEY };
             let mut sampler = Sampler::new(SamplerKind::Sobol, key, 8 * u64::from(pass), 0);
             for sample in 0..8 {
-                let point = sampler.point(0, sample);
+                let point = sampler.camera_point(0, sample);
                 let [u] = numbers(&mut sampler, point, Use::Direction(3));
                 parts[(u * 16.0) as usize] += 1;
             }
@@ -336,24 +345,30 @@ mod tests {
         assert_eq!(parts, [1; 16]);
     }
 
-    /// What was learned from some numbers never meets them again.
+    /// What was learned from some numbers never meets them again; what it has no say in goes on.
     #[test]
-    fn every_lesson_begins_other_sequences() {
+    fn every_lesson_begins_other_sequences_but_for_the_camera() {
         for kind in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
-            let mut drawn = [0, 1, 2].map(|lessons| {
+            let drawn = [0, 1, 2].map(|lessons| {
                 let mut sampler = Sampler::new(kind, KEY, 5, lessons);
+                let camera_point = sampler.camera_point(4, 0);
                 let point = match sampler.ranks() {
                     Some(mut ranks) => ranks.next(4),
-                    None => sampler.point(4, 0),
+                    None => sampler.path_point(camera_point),
                 };
-                let [u] = numbers(&mut sampler, point, Use::Direction(1));
-                let [film] = numbers(&mut sampler, point, Use::Camera);
-                [u, film].map(f32::to_bits)
+                let [film] = numbers::<1>(&mut sampler, camera_point, Use::Camera);
+                let [lens] = numbers::<1>(&mut sampler, camera_point, Use::Lens);
+                let [u] = numbers::<1>(&mut sampler, point, Use::Direction(1));
+                [film, lens, u].map(f32::to_bits)
             });
-            for k in 0..2 {
-                drawn.sort_unstable_by_key(|numbers| numbers[k]);
-                let differ = |pair: &[[u32; 2]]| pair[0][k] != pair[1][k];
-                assert!(drawn.windows(2).all(differ), "{kind}: {drawn:?}");
+            for (k, goes_on) in [true, true, false].into_iter().enumerate() {
+                for (one, other) in [(0, 1), (0, 2), (1, 2)] {
+                    assert_eq!(
+                        drawn[one][k] == drawn[other][k],
+                        goes_on,
+                        "{kind}: {drawn:?}"
+                    );
+                }
             }
         }
     }

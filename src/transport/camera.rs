@@ -46,9 +46,12 @@ pub(super) fn start<C: Colour, V: Variant>(
         if sampler.has_sequences() {
             for (point, path) in points.iter_mut().zip(chunk.clone()) {
                 let path = path as u32;
-                *point = sampler.point(paths.pixel(path), path % job.samples);
+                *point = sampler.camera_point(paths.pixel(path), path % job.samples);
             }
-            segments.point.extend_from_slice(&points[..chunk.len()]);
+            let points = points[..chunk.len()].iter();
+            segments
+                .point
+                .extend(points.map(|&point| sampler.path_point(point)));
         }
         if C::RANDOM_NUMBERS > 0 {
             sampler.fill(&points, chunk.len(), Use::Camera, numbers.each_mut());
