@@ -186,10 +186,10 @@ impl Effort {
 /// Every strategy. Those that split the first vertex need fewer samples for the same noise.
 fn every_strategy() -> [Walk; StrategyKind::ALL.len()] {
     StrategyKind::ALL.map(|kind| match kind {
-        // The light of paths with more than 48 segments is below 1e-6 of the whole: at each reflection a quarter of the
+        // The light of paths with more than 32 segments is below 1e-4 of the whole: at each reflection a quarter of the
         // light is lost, and some leaves through the open front.
         StrategyKind::FixedDepth => Walk {
-            max_depth: Some(48),
+            max_depth: Some(32),
             ..Walk::new(kind, 10)
         },
         StrategyKind::Roulette
