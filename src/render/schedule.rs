@@ -63,6 +63,11 @@ impl Schedule {
             0 => 1,
             _ => 1 << (pass - 1).min(31),
         };
+        let most = if self.learns && !self.teaches(before) {
+            most.min(self.weight_so_far(before))
+        } else {
+            most
+        };
         full.min(most)
             .min(missing(self.budget, before))
             .min(missing(until, before))
@@ -81,6 +86,18 @@ impl Schedule {
         } else {
             1.0
         }
+    }
+
+    /// What all samples together weigh, rounded down, where every pixel has had so many, with all lessons among them; at least 1. A pass that weighed more would
+    /// leave pixels that it does not reach far behind, and the film could not tell its noise from that of the lessons.
+    fn weight_so_far(&self, before: u64) -> u32 {
+        // Passes of lessons double what there is.
+        let taught = match self.lessons() {
+            0 => 0,
+            lessons => u64::from(lessons.next_power_of_two()),
+        };
+        let weight = before.saturating_sub(taught.div_ceil(2));
+        u32::try_from(weight).unwrap_or(u32::MAX).max(1)
     }
 
     fn lessons(&self) -> u32 {
@@ -180,8 +197,33 @@ mod tests {
                 samples
             })
             .collect();
-        assert_eq!(passes, [1, 1, 2, 4, 8, 16, 16, 2]);
+        assert_eq!(passes, [1, 1, 2, 4, 8, 8, 16, 10]);
         assert_eq!([8, 16].map(|before| schedule.weight(before)), [0.5, 1.0]);
+    }
+
+    /// From the third on: of two, nobody knows which is the noisier.
+    #[test]
+    fn no_pass_weighs_more_than_all_before_it() {
+        for (budget, pixels) in [
+            (TIME, 1),
+            (TIME, 400 * 400),
+            (TIME, 4096 * 4096),
+            (spp(20), 1),
+            (spp(5), 1),
+        ] {
+            let schedule = Schedule::new(budget, SamplerKind::ArrayQmc, true, pixels);
+            let (mut before, mut weight) = (0, 0.0);
+            for pass in 0..16 {
+                let samples = schedule.samples(pass, before, TIME);
+                let new = f64::from(samples) * schedule.weight(before);
+                assert!(
+                    pass < 2 || new <= weight,
+                    "{budget:?}: pass {pass} weighs {new} after {weight}"
+                );
+                before += u64::from(samples);
+                weight += new;
+            }
+        }
     }
 
     #[test]
