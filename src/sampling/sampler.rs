@@ -109,7 +109,7 @@ enum Points {
 pub struct Sampler {
     kind: SamplerKind,
     stream: RandomStream,
-    /// What the sequences of a pixel depend on beside it.
+    /// What the sequences of a pixel depend on beside it and the lessons: the seed, in two words, and the tile.
     key: [u32; 3],
     lessons: u32,
     before: u64,
@@ -140,18 +140,29 @@ impl Sampler {
     /// Who numbers the particles of each pixel anew at every vertex, if they do not keep their points: for a sampler that wants them
     /// [sorted](SamplerKind::ArrayQmc).
     pub fn ranks(&self) -> Option<Ranks> {
-        let key = [self.key[0], self.key[1], self.key[2], self.lessons];
-        (self.kind == SamplerKind::ArrayQmc).then(|| Ranks::new(key, self.before))
+        (self.kind == SamplerKind::ArrayQmc)
+            .then(|| Ranks::new(self.sequences_after(self.lessons), self.before))
     }
 
     /// The point with which sample number `sample` of this pass of pixel number `pixel` of the batch's tile starts: for [`Use::Camera`] and [`Use::Lens`].
     pub fn camera_point(&self, pixel: u32, sample: u32) -> SequencePoint {
-        SequencePoint::new(self.key, pixel, self.before + u64::from(sample))
+        self.point_after(0, pixel, sample)
     }
 
-    /// The point with which the path that starts with this `camera_point` goes on.
-    pub fn path_point(&self, camera_point: SequencePoint) -> SequencePoint {
-        camera_point.of_lesson(self.lessons)
+    /// The point with which the path of that sample goes on.
+    pub fn path_point(&self, pixel: u32, sample: u32) -> SequencePoint {
+        self.point_after(self.lessons, pixel, sample)
+    }
+
+    fn point_after(&self, lessons: u32, pixel: u32, sample: u32) -> SequencePoint {
+        let index = self.before + u64::from(sample);
+        SequencePoint::new(self.sequences_after(lessons), pixel, index)
+    }
+
+    /// What names the sequences that begin after so many lessons.
+    fn sequences_after(&self, lessons: u32) -> [u32; 4] {
+        let [seed_low, seed_high, tile] = self.key;
+        [seed_low, seed_high, tile, lessons]
     }
 
     fn points(&self, what: Use) -> Points {
@@ -322,7 +333,7 @@ mod tests {
     #[test]
     fn decisions_have_32_random_bits() {
         let mut sampler = Sampler::new(SamplerKind::Sobol, KEY, 0, 0);
-        let point = sampler.camera_point(4, 5);
+        let point = sampler.path_point(4, 5);
         let drawn = [(); 4096].map(|()| decide(&mut sampler, point, 0));
         let low: std::collections::BTreeSet<u32> = drawn.iter().map(|bits| bits & 511).collect();
         assert!(low.len() > 500, "{}", low.len());
@@ -337,7 +348,7 @@ mod tests {
             let key = StreamKey { pass, ..KEY };
             let mut sampler = Sampler::new(SamplerKind::Sobol, key, 8 * u64::from(pass), 0);
             for sample in 0..8 {
-                let point = sampler.camera_point(0, sample);
+                let point = sampler.path_point(0, sample);
                 let [u] = numbers(&mut sampler, point, Use::Direction(3));
                 parts[(u * 16.0) as usize] += 1;
             }
@@ -354,7 +365,7 @@ mod tests {
                 let camera_point = sampler.camera_point(4, 0);
                 let point = match sampler.ranks() {
                     Some(mut ranks) => ranks.next(4),
-                    None => sampler.path_point(camera_point),
+                    None => sampler.path_point(4, 0),
                 };
                 let [film] = numbers::<1>(&mut sampler, camera_point, Use::Camera);
                 let [lens] = numbers::<1>(&mut sampler, camera_point, Use::Lens);

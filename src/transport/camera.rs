@@ -46,12 +46,10 @@ pub(super) fn start<C: Colour, V: Variant>(
         if sampler.has_sequences() {
             for (point, path) in points.iter_mut().zip(chunk.clone()) {
                 let path = path as u32;
-                *point = sampler.camera_point(paths.pixel(path), path % job.samples);
+                let (pixel, sample) = (paths.pixel(path), path % job.samples);
+                *point = sampler.camera_point(pixel, sample);
+                segments.point.push(sampler.path_point(pixel, sample));
             }
-            let points = points[..chunk.len()].iter();
-            segments
-                .point
-                .extend(points.map(|&point| sampler.path_point(point)));
         }
         if C::RANDOM_NUMBERS > 0 {
             sampler.fill(&points, chunk.len(), Use::Camera, numbers.each_mut());
