@@ -38,16 +38,16 @@ impl Rays {
         self.tfar.resize(len);
     }
 
-    /// Becomes the rays of `source` in another order: number `order[i]` in place i.
+    /// Becomes the rays of `source` in another order, number `order[i]` in place i, but for where they begin: that is unspecified, for they are traced.
     ///
     /// # Panics
     /// When a number is not below the [`len`](Self::len) of `source`.
-    pub fn gather(&mut self, source: &Self, order: &[u32]) {
+    pub fn gather_traced(&mut self, source: &Self, order: &[u32]) {
         let axes = self.origin.iter_mut().chain(&mut self.direction);
         for (axis, source) in axes.zip(source.origin.iter().chain(&source.direction)) {
             axis.gather(source, order);
         }
-        self.tnear.gather(&source.tnear, order);
+        self.tnear.resize(order.len());
         self.tfar.gather(&source.tfar, order);
     }
 

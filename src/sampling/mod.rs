@@ -18,5 +18,5 @@ pub use pdf::{AreaPdf, SolidAnglePdf, power_heuristic};
 pub use piecewise_bilinear::{PiecewiseBilinear, SquarePoint};
 pub use random::{RandomStream, StreamKey};
 pub use ranks::Ranks;
-pub use sampler::{Decisions, Sampler, SamplerKind, UnknownSampler, Use};
+pub use sampler::{Decisions, PixelSequences, Sampler, SamplerKind, UnknownSampler, Use};
 pub use sobol::SequencePoint;

@@ -1,44 +1,27 @@
 //! The ranks of particles in their pixel.
 
-use super::SequencePoint;
-use super::sobol::scramble;
+use super::{PixelSequences, SequencePoint};
 
-/// Numbers the particles of each pixel in the order in which they come: those of a pixel side by side.
-///
-/// A rank counts the samples of all passes before, so that the passes of a pixel go on with one lattice.
+/// Numbers the particles of each pixel in the order in which they come: those of a pixel side by side, pixel by pixel.
+#[derive(Default)]
 pub struct Ranks {
-    key: [u32; 4],
-    before: u32,
-    pixel: Option<u32>,
     next: SequencePoint,
+    /// The first camera path of the next pixel.
+    end: u32,
 }
 
 impl Ranks {
-    /// The ranks of a batch whose sequences `key` names, where each pixel has had `before` samples in all passes before.
-    pub(super) fn new(key: [u32; 4], before: u64) -> Self {
-        Self {
-            key,
-            // Beyond 2^32 the lattice begins again.
-            before: before as u32,
-            pixel: None,
-            next: SequencePoint::default(),
-        }
-    }
-
-    /// The point of the next particle, which is of pixel number `pixel` of the tile.
+    /// The point of the next particle, which descends from camera path number `path` of the batch; each pixel has `samples` of these, and one of the
+    /// `sequences`.
     #[inline(always)]
-    pub fn next(&mut self, pixel: u32) -> SequencePoint {
-        if self.pixel != Some(pixel) {
-            self.start(pixel);
+    pub fn next(&mut self, path: u32, samples: u32, sequences: &[PixelSequences]) -> SequencePoint {
+        if path >= self.end {
+            let pixel = path / samples;
+            self.end = (pixel + 1) * samples;
+            self.next = sequences[pixel as usize].first_rank();
         }
         let point = self.next;
         self.next = point.successor();
         point
-    }
-
-    #[cold]
-    fn start(&mut self, pixel: u32) {
-        self.pixel = Some(pixel);
-        self.next = SequencePoint::ranked(scramble(self.key, pixel), self.before);
     }
 }

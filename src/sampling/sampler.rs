@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::lattice::{lattice_coordinate, lattice_coordinates};
 use super::random::to_uniform;
-use super::sobol::COORDINATE_BITS;
+use super::sobol::{COORDINATE_BITS, scramble};
 use super::{RandomStream, Ranks, SequencePoint, StreamKey};
 
 /// How the random numbers of paths are chosen.
@@ -105,6 +105,37 @@ enum Points {
     Lattice,
 }
 
+/// The sequences of one pixel, in one pass.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PixelSequences {
+    /// The scramble of the sequence with which camera paths start.
+    camera: u32,
+    /// That with which they go on.
+    path: u32,
+    /// How many samples the pixel has had in all passes before.
+    before: u64,
+}
+
+impl PixelSequences {
+    /// The point with which sample number `sample` of the pass starts: for [`Use::Camera`] and [`Use::Lens`].
+    #[inline(always)]
+    pub fn camera_point(&self, sample: u32) -> SequencePoint {
+        SequencePoint::new(self.camera, self.before + u64::from(sample))
+    }
+
+    /// The point with which the path of that sample goes on.
+    #[inline(always)]
+    pub fn path_point(&self, sample: u32) -> SequencePoint {
+        SequencePoint::new(self.path, self.before + u64::from(sample))
+    }
+
+    /// The point of the first of the particles of the pixel that are numbered by [`Ranks`]. It counts the samples of all passes before, so that passes go
+    /// on with one lattice. Beyond 2^32 that begins again.
+    pub(super) fn first_rank(&self) -> SequencePoint {
+        SequencePoint::ranked(self.path, self.before as u32)
+    }
+}
+
 /// The random numbers of one batch.
 pub struct Sampler {
     kind: SamplerKind,
@@ -137,32 +168,26 @@ impl Sampler {
         self.kind != SamplerKind::Independent
     }
 
+    /// Whether particles carry points of sequences from vertex to vertex, and not only where they draw one of several [materials](Self::material_choice).
+    pub fn carries_points(&self) -> bool {
+        self.kind == SamplerKind::Sobol
+    }
+
     /// Who numbers the particles of each pixel anew at every vertex, if they do not keep their points: for a sampler that wants them
     /// [sorted](SamplerKind::ArrayQmc).
     pub fn ranks(&self) -> Option<Ranks> {
-        (self.kind == SamplerKind::ArrayQmc)
-            .then(|| Ranks::new(self.sequences_after(self.lessons), self.before))
+        (self.kind == SamplerKind::ArrayQmc).then(Ranks::default)
     }
 
-    /// The point with which sample number `sample` of this pass of pixel number `pixel` of the batch's tile starts: for [`Use::Camera`] and [`Use::Lens`].
-    pub fn camera_point(&self, pixel: u32, sample: u32) -> SequencePoint {
-        self.point_after(0, pixel, sample)
-    }
-
-    /// The point with which the path of that sample goes on.
-    pub fn path_point(&self, pixel: u32, sample: u32) -> SequencePoint {
-        self.point_after(self.lessons, pixel, sample)
-    }
-
-    fn point_after(&self, lessons: u32, pixel: u32, sample: u32) -> SequencePoint {
-        let index = self.before + u64::from(sample);
-        SequencePoint::new(self.sequences_after(lessons), pixel, index)
-    }
-
-    /// What names the sequences that begin after so many lessons.
-    fn sequences_after(&self, lessons: u32) -> [u32; 4] {
+    /// The sequences of pixel number `pixel` of the batch's tile.
+    pub fn sequences(&self, pixel: u32) -> PixelSequences {
         let [seed_low, seed_high, tile] = self.key;
-        [seed_low, seed_high, tile, lessons]
+        let after = |lessons| scramble([seed_low, seed_high, tile, lessons], pixel);
+        PixelSequences {
+            camera: after(0),
+            path: after(self.lessons),
+            before: self.before,
+        }
     }
 
     fn points(&self, what: Use) -> Points {
@@ -288,7 +313,7 @@ mod tests {
     fn independent_numbers_are_the_streams() {
         let mut sampler = Sampler::new(SamplerKind::Independent, KEY, 0, 0);
         let mut stream = RandomStream::new(KEY);
-        let point = sampler.camera_point(4, 5);
+        let point = sampler.sequences(4).camera_point(5);
         let drawn: [f32; 3] = numbers(&mut sampler, point, Use::Camera);
         assert_eq!(drawn, [(); 3].map(|()| stream.uniform()));
         assert!(sampler.decisions(&[point]).is_none() && sampler.ranks().is_none());
@@ -300,7 +325,7 @@ mod tests {
     fn uses_do_not_share_dimensions() {
         for kind in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
             let mut sampler = Sampler::new(kind, KEY, 5, 0);
-            let point = sampler.camera_point(4, 0);
+            let point = sampler.sequences(4).camera_point(0);
             let mut all: Vec<f32> = Vec::new();
             for what in [
                 Use::Camera,
@@ -333,7 +358,7 @@ mod tests {
     #[test]
     fn decisions_have_32_random_bits() {
         let mut sampler = Sampler::new(SamplerKind::Sobol, KEY, 0, 0);
-        let point = sampler.path_point(4, 5);
+        let point = sampler.sequences(4).path_point(5);
         let drawn = [(); 4096].map(|()| decide(&mut sampler, point, 0));
         let low: std::collections::BTreeSet<u32> = drawn.iter().map(|bits| bits & 511).collect();
         assert!(low.len() > 500, "{}", low.len());
@@ -348,7 +373,7 @@ mod tests {
             let key = StreamKey { pass, ..KEY };
             let mut sampler = Sampler::new(SamplerKind::Sobol, key, 8 * u64::from(pass), 0);
             for sample in 0..8 {
-                let point = sampler.path_point(0, sample);
+                let point = sampler.sequences(0).path_point(sample);
                 let [u] = numbers(&mut sampler, point, Use::Direction(3));
                 parts[(u * 16.0) as usize] += 1;
             }
@@ -362,10 +387,10 @@ mod tests {
         for kind in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
             let drawn = [0, 1, 2].map(|lessons| {
                 let mut sampler = Sampler::new(kind, KEY, 5, lessons);
-                let camera_point = sampler.camera_point(4, 0);
+                let camera_point = sampler.sequences(4).camera_point(0);
                 let point = match sampler.ranks() {
-                    Some(mut ranks) => ranks.next(4),
-                    None => sampler.path_point(4, 0),
+                    Some(mut ranks) => ranks.next(0, 1, &[sampler.sequences(4)]),
+                    None => sampler.sequences(4).path_point(0),
                 };
                 let [film] = numbers::<1>(&mut sampler, camera_point, Use::Camera);
                 let [lens] = numbers::<1>(&mut sampler, camera_point, Use::Lens);
@@ -387,14 +412,16 @@ mod tests {
     /// The particles of a pixel are numbered from its samples in earlier passes on, and pixels have lattices of their own.
     #[test]
     fn ranks_go_on_from_pass_to_pass() {
-        let ranks = |before, pixels: &[u32]| {
-            let mut ranks = Sampler::new(SamplerKind::ArrayQmc, KEY, before, 0)
-                .ranks()
-                .expect("it sorts");
-            pixels.iter().map(|&pixel| ranks.next(pixel)).collect()
+        // Of particles that descend from these paths, four of which belong to each of two pixels.
+        let ranks = |before, paths: &[u32]| {
+            let sampler = Sampler::new(SamplerKind::ArrayQmc, KEY, before, 0);
+            let mut ranks = sampler.ranks().expect("it sorts");
+            let sequences = [7, 8].map(|pixel| sampler.sequences(pixel));
+            let next = |&path| ranks.next(path, 4, &sequences);
+            paths.iter().map(next).collect()
         };
-        let whole: Vec<SequencePoint> = ranks(0, &[7, 7, 7, 7, 8, 8]);
-        let later: Vec<SequencePoint> = ranks(2, &[7, 7]);
+        let whole: Vec<SequencePoint> = ranks(0, &[3, 0, 1, 3, 4, 7]);
+        let later: Vec<SequencePoint> = ranks(2, &[2, 0]);
         assert_eq!(whole[2..4], later);
         assert!(whole[..4].iter().all(|point| !whole[4..].contains(point)));
     }

@@ -20,10 +20,11 @@ pub struct SequencePoint {
 }
 
 impl SequencePoint {
-    /// Point number `index` of the sequence of a `pixel`, among those that the words of `key` name.
-    pub fn new(key: [u32; 4], pixel: u32, index: u64) -> Self {
+    /// Point number `index` of the sequence of a scramble.
+    #[inline(always)]
+    pub fn new(scramble: u32, index: u64) -> Self {
         Self {
-            scramble: hash(scramble(key, pixel), (index >> INDEX_BITS) as u32),
+            scramble: hash(scramble, (index >> INDEX_BITS) as u32),
             index: index as u32 & ((1 << INDEX_BITS) - 1),
         }
     }
@@ -96,7 +97,7 @@ impl SequencePoint {
     }
 }
 
-/// What the words of `key` name for a `pixel`.
+/// The scramble that the words of `key` name for a `pixel`.
 pub(super) fn scramble(key: [u32; 4], pixel: u32) -> u32 {
     key.into_iter().chain([pixel]).fold(0, hash)
 }
@@ -125,7 +126,7 @@ mod tests {
             for first in [0, 64, 1 << 16, 1 << 40] {
                 let mut parts = [[0; 64]; 4];
                 for index in first..first + 64 {
-                    let point = SequencePoint::new([1, 2, 3, 4], 5, index);
+                    let point = SequencePoint::new(scramble([1, 2, 3, 4], 5), index);
                     let coordinates = point.coordinates(set);
                     for (which, u) in coordinates.into_iter().enumerate() {
                         assert_eq!(u, point.coordinate(set, which as u32));
@@ -139,12 +140,12 @@ mod tests {
 
     #[test]
     fn keys_children_and_repetitions_have_sequences_of_their_own() {
-        let point = SequencePoint::new([1, 2, 3, 4], 5, 7);
+        let point = SequencePoint::new(scramble([1, 2, 3, 4], 5), 7);
         let others = [
-            SequencePoint::new([2, 2, 3, 4], 5, 7),
-            SequencePoint::new([1, 2, 4, 4], 5, 7),
-            SequencePoint::new([1, 2, 3, 5], 5, 7),
-            SequencePoint::new([1, 2, 3, 4], 5, 7 + (1 << 16)),
+            SequencePoint::new(scramble([2, 2, 3, 4], 5), 7),
+            SequencePoint::new(scramble([1, 2, 4, 4], 5), 7),
+            SequencePoint::new(scramble([1, 2, 3, 5], 5), 7),
+            SequencePoint::new(scramble([1, 2, 3, 4], 5), 7 + (1 << 16)),
             point.branch(1, 0),
             point.branch(2, 0),
             point.branch(1, 1),
@@ -164,7 +165,7 @@ mod tests {
         const DRAWS: u32 = 1 << 15;
         let mut cells = [0_u32; 64];
         for key in 0..DRAWS {
-            let point = SequencePoint::new([0, 0, 0, key], 5, 3);
+            let point = SequencePoint::new(scramble([0, 0, 0, key], 5), 3);
             let [a, ..] = point.coordinates(2);
             let [b, ..] = point.branch(1, 0).coordinates(2);
             cells[(a * 8.0) as usize * 8 + (b * 8.0) as usize] += 1;

@@ -20,11 +20,11 @@ const LEFT: u32 = 7;
 
 /// Where segments are sorted: the memory of one thread.
 pub(super) struct Arrangement<C: Colour> {
-    /// Where each segment ends, in world space.
+    /// Where each segment ends, in world space; no number where it has left the scene.
     ends: [Vec<f32>; 3],
-    /// Which way what it met faces, or [`LEFT`].
-    classes: Vec<u32>,
-    /// The name of each, and its number in its pixel.
+    /// Which way what each met faces, or [`LEFT`]; then the place of that as well.
+    names: Vec<u32>,
+    /// Of one pixel, the name of each, and its number.
     keys: Vec<u64>,
     order: Vec<u32>,
     spare: Segments<C>,
@@ -34,7 +34,7 @@ impl<C: Colour> Default for Arrangement<C> {
     fn default() -> Self {
         Self {
             ends: Default::default(),
-            classes: Vec::new(),
+            names: Vec::new(),
             keys: Vec::new(),
             order: Vec::new(),
             spare: Segments::new(),
@@ -47,92 +47,147 @@ impl<C: Colour> Arrangement<C> {
     pub fn arrange(&mut self, samples: u32, segments: &mut Segments<C>) {
         let Self {
             ends,
-            classes,
+            names,
             keys,
             order,
             spare,
         } = self;
-        ends.iter_mut()
-            .for_each(|axis| resize(axis, segments.len()));
-        resize(classes, segments.len());
-        look(segments, ends, classes);
-        make_room(order, segments.len());
-        let pixels = segments
-            .path
-            .chunk_by(|one, next| one / samples == next / samples);
-        for pixel in pixels {
-            let first = order.len();
-            let sorted = first..first + pixel.len();
-            let ends = ends.each_ref().map(|axis| &axis[sorted.clone()]);
-            name(ends, &classes[sorted], keys);
-            keys.sort_unstable();
-            order.extend(keys.iter().map(|&key| first as u32 + key as u32));
-        }
+        let count = segments.len();
+        ends.iter_mut().for_each(|axis| resize(axis, count));
+        resize(names, count);
+        look(segments, ends, names);
+        make_room(order, count);
+        sort(&segments.path, samples, ends, names, keys, order);
         spare.gather(segments, order);
         std::mem::swap(spare, segments);
     }
 }
 
-/// Writes where each segment ends, and which way what it met faces.
+/// Writes where each segment ends, no number on any axis for those who have left the scene, and into its name which way what it met faces.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn look<C: Colour>(segments: &Segments<C>, ends: &mut [Vec<f32>; 3], classes: &mut [u32]) {
+fn look<C: Colour>(segments: &Segments<C>, ends: &mut [Vec<f32>; 3], names: &mut [u32]) {
     let (rays, hits) = (&segments.rays, &segments.hits);
+    let geometries = hits.geometry_ids();
     let lines = rays.origins().into_iter().zip(rays.directions());
     for (axis, (origins, directions)) in ends.iter_mut().zip(lines) {
         let numbers = origins.iter().zip(directions).zip(rays.tfars());
-        for (end, ((origin, direction), t)) in axis.iter_mut().zip(numbers) {
-            *end = origin + t * direction;
+        for ((end, &geometry), ((origin, direction), t)) in
+            axis.iter_mut().zip(geometries).zip(numbers)
+        {
+            let is_hit = geometry != INVALID_GEOMETRY;
+            *end = if is_hit {
+                origin + t * direction
+            } else {
+                f32::NAN
+            };
         }
     }
     let ([nx, ny, nz], [dx, dy, dz]) = (hits.normals(), rays.directions());
-    let geometries = hits.geometry_ids();
-    for (i, class) in classes.iter_mut().enumerate() {
+    for (i, name) in names.iter_mut().enumerate() {
         let normal = Vec3::new(nx[i], ny[i], nz[i]);
         let facing = normal * -1.0_f32.copysign(normal.dot(Vec3::new(dx[i], dy[i], dz[i])));
         let is_hit = geometries[i] != INVALID_GEOMETRY;
-        *class = if is_hit { Frame::class(facing) } else { LEFT };
+        let class = if is_hit { Frame::class(facing) } else { LEFT };
+        *name = class << (3 * PLACE_BITS);
     }
 }
 
-/// Makes `keys` those of the particles of one pixel, of which there are `ends` and `classes`: class, Morton code of the place in the box
-/// of all, number.
+/// Appends the numbers of all particles to `order`, which is empty: those of each pixel, of which there are `samples` camera paths, by `names`, to which their
+/// places are added.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn name(ends: [&[f32]; 3], classes: &[u32], keys: &mut Vec<u64>) {
-    const CELLS: f32 = (1 << PLACE_BITS) as f32;
-    let [x, y, z] = ends.map(|axis| {
-        let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
-        for (&end, &class) in axis.iter().zip(classes) {
-            let counts = class != LEFT;
-            least = if counts & (end < least) { end } else { least };
-            most = if counts & (end > most) { end } else { most };
-        }
-        // Where all lie in one plane, the scale is infinite, and places are not numbers.
-        let scale = CELLS / (most - least);
-        move |i: usize| {
-            let place = (axis[i] - least) * scale;
-            let place = if place < CELLS - 1.0 {
-                place
-            } else {
-                CELLS - 1.0
-            };
-            let place = if place > 0.0 { place } else { 0.0 };
-            spread(place as i32 as u32)
-        }
-    });
-    resize(keys, classes.len());
-    for (i, (key, &class)) in keys.iter_mut().zip(classes).enumerate() {
-        let place = if class == LEFT {
-            0
+fn sort(
+    paths: &[u32],
+    samples: u32,
+    ends: &[Vec<f32>; 3],
+    names: &mut [u32],
+    keys: &mut Vec<u64>,
+    order: &mut Vec<u32>,
+) {
+    let mut first = 0;
+    while let Some(path) = paths.get(first) {
+        let next_pixel = (path / samples + 1) * samples;
+        let particles = paths[first..].iter();
+        let count = particles.take_while(|&&path| path < next_pixel).count();
+        let pixel = first..first + count;
+        if count == 1 {
+            order.push(first as u32);
         } else {
-            x(i) << 2 | y(i) << 1 | z(i)
-        };
-        *key = u64::from(class << (3 * PLACE_BITS) | place) << 32 | i as u64;
+            let ends = ends.each_ref().map(|axis| &axis[pixel.clone()]);
+            add_places(ends, &mut names[pixel.clone()]);
+            resize(keys, count);
+            for ((i, key), &name) in (first as u64..).zip(&mut *keys).zip(&names[pixel]) {
+                *key = u64::from(name) << 32 | i;
+            }
+            keys.sort_unstable();
+            order.extend(keys.iter().map(|&key| key as u32));
+        }
+        first += count;
+    }
+}
+
+/// Adds to the names of the particles of one pixel the Morton codes of their `ends` in the box of all.
+#[inline(always)]
+fn add_places(ends: [&[f32]; 3], names: &mut [u32]) {
+    for (ends, bit) in ends.into_iter().zip([2, 1, 0]) {
+        let axis = Axis::of(ends);
+        for (name, &end) in names.iter_mut().zip(ends) {
+            *name |= axis.place(end) << bit;
+        }
+    }
+}
+
+/// One axis of the box of all particles of a pixel.
+#[derive(Clone, Copy)]
+struct Axis {
+    least: f32,
+    scale: f32,
+}
+
+impl Axis {
+    /// That of these `ends`, where they are numbers.
+    #[inline(always)]
+    fn of(ends: &[f32]) -> Self {
+        const LANES: usize = 8;
+        // Comparisons with what is no number are false.
+        let lesser = |one: f32, other: f32| if other < one { other } else { one };
+        let greater = |one: f32, other: f32| if other > one { other } else { one };
+        let (mut least, mut most) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
+        let (chunks, rest) = ends.as_chunks::<LANES>();
+        for ends in chunks {
+            for lane in 0..LANES {
+                least[lane] = lesser(least[lane], ends[lane]);
+                most[lane] = greater(most[lane], ends[lane]);
+            }
+        }
+        for (lane, &end) in rest.iter().enumerate() {
+            least[lane] = lesser(least[lane], end);
+            most[lane] = greater(most[lane], end);
+        }
+        let least = least.into_iter().fold(f32::INFINITY, lesser);
+        let most = most.into_iter().fold(f32::NEG_INFINITY, greater);
+        Self {
+            least,
+            // Where all lie in one plane, this is infinite, and places are not numbers.
+            scale: (1 << PLACE_BITS) as f32 / (most - least),
+        }
+    }
+
+    /// Where on the axis `end` is, in [`PLACE_BITS`] bits with two zeros before each.
+    #[inline(always)]
+    fn place(self, end: f32) -> u32 {
+        const LAST: f32 = ((1 << PLACE_BITS) - 1) as f32;
+        /// Sums with it have their integers in the last bits.
+        const INTEGERS: f32 = (1 << 23) as f32;
+        let place = (end - self.least) * self.scale - 0.5;
+        let place = if place < LAST { place } else { LAST };
+        let place = if place > 0.0 { place } else { 0.0 };
+        spread((place + INTEGERS).to_bits() - INTEGERS.to_bits())
     }
 }
 
@@ -159,17 +214,16 @@ mod tests {
 
     #[test]
     fn neighbours_in_space_are_neighbours_in_the_order() {
+        // Of three pixels, the first and the last have one particle. In the other, the fifth faces another way, the sixth has left the scene.
+        let paths = [3, 4, 5, 5, 7, 4, 6, 7, 8];
         let ends = [
-            [0.0, 1.0, 0.49, 0.51, 0.1, f32::NAN, 0.9],
-            [0.0, 1.0, 0.49, 0.1, 0.1, 0.0, 0.9],
-            [5.0; 7],
+            vec![9.0, 0.0, 1.0, 0.49, 0.51, 0.1, f32::NAN, 0.9, 0.0],
+            vec![9.0, 0.0, 1.0, 0.49, 0.1, 0.1, f32::NAN, 0.9, 0.0],
+            vec![9.0, 5.0, 5.0, 5.0, 5.0, 5.0, f32::NAN, 5.0, 0.0],
         ];
-        // The fifth faces another way, the sixth has left the scene.
-        let classes = [2, 2, 2, 2, 1, LEFT, 2];
-        let mut keys = Vec::new();
-        name(ends.each_ref().map(|axis| &axis[..]), &classes, &mut keys);
-        keys.sort_unstable();
-        let order: Vec<u32> = keys.iter().map(|&key| key as u32).collect();
-        assert_eq!(order, [4, 0, 2, 3, 6, 1, 5]);
+        let mut names = [0, 2, 2, 2, 2, 1, LEFT, 2, 0].map(|class| class << (3 * PLACE_BITS));
+        let (mut keys, mut order) = (Vec::new(), Vec::new());
+        sort(&paths, 4, &ends, &mut names, &mut keys, &mut order);
+        assert_eq!(order, [0, 5, 1, 3, 4, 7, 2, 6, 8]);
     }
 }

@@ -11,7 +11,7 @@ use crate::film::FilmTile;
 use crate::lanes::{CHUNK, VectorColumn};
 use crate::learning::Knowledge;
 use crate::room::{gather, make_room, resize};
-use crate::sampling::{SequencePoint, SolidAnglePdf};
+use crate::sampling::{PixelSequences, Ranks, Sampler, SequencePoint, SolidAnglePdf};
 use crate::scene::{HitCoordinates, Refraction};
 use crate::spectrum::Colour;
 
@@ -22,6 +22,8 @@ pub(super) struct CameraPaths<C: Colour> {
     pub pixels: Range<u32>,
     /// How many belong to each of those.
     pub samples: u32,
+    /// The sequences of each of those. Empty where random numbers are independent.
+    pub sequences: Vec<PixelSequences>,
     /// How bright each of those is, as far as that was learned.
     pub brightness: Vec<f32>,
     /// The wavelengths that the path carries.
@@ -43,7 +45,7 @@ pub(super) struct Segments<C: Colour> {
     pub path: Vec<u32>,
     /// Throughput, with the bsdf of the vertex that it left and the compensation for all decisions so far.
     pub throughput: Vec<C::Spectrum>,
-    /// Where the particle stands in its sequence of random numbers. Empty where those are independent.
+    /// Where the particle stands in its sequence of random numbers. Empty where those are independent, and where nobody asks before there are ranks.
     pub point: Vec<SequencePoint>,
     /// What refraction has done to it. Empty in variants that do not refract.
     pub refraction: Vec<Refraction>,
@@ -125,6 +127,7 @@ impl<C: Colour> CameraPaths<C> {
         Self {
             pixels: 0..0,
             samples: 1,
+            sequences: Vec::new(),
             brightness: Vec::new(),
             wavelengths: Vec::new(),
             wavelength_draw: Vec::new(),
@@ -146,6 +149,15 @@ impl<C: Colour> CameraPaths<C> {
         count
     }
 
+    /// Finds out which sequences the pixels have.
+    pub fn find_sequences(&mut self, sampler: &Sampler) {
+        make_room(&mut self.sequences, self.pixels.len());
+        if sampler.has_sequences() {
+            let sequences = self.pixels.clone().map(|pixel| sampler.sequences(pixel));
+            self.sequences.extend(sequences);
+        }
+    }
+
     /// Finds out how bright the pixels are, which are those of `tile` on a film of so many columns.
     pub fn find_brightness(&mut self, knowledge: &Knowledge, tile: &FilmTile, width: u32) {
         make_room(&mut self.brightness, self.pixels.len());
@@ -156,10 +168,16 @@ impl<C: Colour> CameraPaths<C> {
         self.brightness.extend(self.pixels.clone().map(brightness));
     }
 
-    /// The pixel of the tile to which a path belongs.
+    /// The point of the next of the particles that are numbered by `ranks`, which descends from a path.
+    #[inline(always)]
+    pub fn rank(&self, path: u32, ranks: &mut Ranks) -> SequencePoint {
+        ranks.next(path, self.samples, &self.sequences)
+    }
+
+    /// The pixel to which a path belongs: its number among those of the batch.
     #[inline(always)]
     pub fn pixel(&self, path: u32) -> u32 {
-        self.pixels.start + path / self.samples
+        path / self.samples
     }
 }
 
@@ -207,7 +225,7 @@ impl<C: Colour> Segments<C> {
         gather(&mut self.refraction, &source.refraction, order);
         gather(&mut self.direction_pdf, &source.direction_pdf, order);
         gather(&mut self.origins, &source.origins, order);
-        self.rays.gather(&source.rays, order);
+        self.rays.gather_traced(&source.rays, order);
         self.hits.gather(&source.hits, order);
         gather(&mut self.births, &source.births, order);
     }

@@ -8,7 +8,7 @@ use multiversion::multiversion;
 use super::batch::{CameraPaths, Segments};
 use super::engine::{Engine, TileJob};
 use super::lineage::first_births;
-use super::variant::Variant;
+use super::variant::{Variant, carries_points};
 use crate::film::FilmTile;
 use crate::lanes::CHUNK;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
@@ -33,6 +33,8 @@ pub(super) fn start<C: Colour, V: Variant>(
     let crop = engine.scene.film.crop;
     let corner = Vec2::new(crop.x as f32, crop.y as f32);
     let count = paths.restart(pixels.clone(), job.samples);
+    paths.find_sequences(sampler);
+    let carries_points = carries_points::<V>(sampler);
     segments.restart(count);
     let mut points = [SequencePoint::default(); CHUNK];
     let mut numbers = [[0.0; CHUNK]; 3];
@@ -40,15 +42,18 @@ pub(super) fn start<C: Colour, V: Variant>(
     let mut lens_numbers = [[0.5; CHUNK]; 2];
     let mut raster = [[0.0; CHUNK]; 2];
     let mut rays = CameraRayLanes::new();
-    let (mut pixel, mut sample) = (pixels.start, 0);
+    let mut next = Sample::default();
     for start in (0..count).step_by(CHUNK) {
         let chunk = start..count.min(start + CHUNK);
         if sampler.has_sequences() {
-            for (point, path) in points.iter_mut().zip(chunk.clone()) {
-                let path = path as u32;
-                let (pixel, sample) = (paths.pixel(path), path % job.samples);
-                *point = sampler.camera_point(pixel, sample);
-                segments.point.push(sampler.path_point(pixel, sample));
+            let mut at = next;
+            for point in &mut points[..chunk.len()] {
+                let sequences = &paths.sequences[at.pixel];
+                *point = sequences.camera_point(at.sample);
+                if carries_points {
+                    segments.point.push(sequences.path_point(at.sample));
+                }
+                at.advance(job.samples);
             }
         }
         if C::RANDOM_NUMBERS > 0 {
@@ -68,8 +73,8 @@ pub(super) fn start<C: Colour, V: Variant>(
             &mut paths.wavelength_draw,
         );
         for lane in 0..chunk.len() {
-            let (x, y) = tile.position(pixel as usize);
-            advance(&mut pixel, &mut sample, job.samples);
+            let (x, y) = tile.position(pixels.start as usize + next.pixel);
+            next.advance(job.samples);
             let film = engine.filter.sample(x, y, [film_u[lane], film_v[lane]]);
             paths.filter_weight.push(film.weight);
             let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
@@ -93,12 +98,21 @@ pub(super) fn start<C: Colour, V: Variant>(
     engine.emission.prepare(paths);
 }
 
-/// Goes on to the next of the `samples` of a pixel, or to the first of the next pixel.
-#[inline(always)]
-fn advance(pixel: &mut u32, sample: &mut u32, samples: u32) {
-    *sample += 1;
-    if *sample == samples {
-        *sample = 0;
-        *pixel += 1;
+/// A sample of a pixel, both numbered within the batch.
+#[derive(Clone, Copy, Default)]
+struct Sample {
+    pixel: usize,
+    sample: u32,
+}
+
+impl Sample {
+    /// Goes on to the next of the `samples` of a pixel, or to the first of the next pixel.
+    #[inline(always)]
+    fn advance(&mut self, samples: u32) {
+        self.sample += 1;
+        if self.sample == samples {
+            self.sample = 0;
+            self.pixel += 1;
+        }
     }
 }

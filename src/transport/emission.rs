@@ -87,7 +87,7 @@ pub(super) fn arrive<C: Colour, V: Variant>(
             .throughput
             .extend(kept.clone().map(|i| segments.throughput[i]));
         if let Some(ranks) = &mut ranks {
-            let points = kept.map(|i| ranks.next(paths.pixel(segments.path[i])));
+            let points = kept.map(|i| paths.rank(segments.path[i], ranks));
             vertices.point.extend(points);
         } else if sampler.has_sequences() {
             vertices.point.extend(kept.map(|i| segments.point[i]));

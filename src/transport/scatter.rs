@@ -7,7 +7,7 @@ use super::engine::Engine;
 use super::guidance::{Guidance, SquarePlaces};
 use super::lineage::Birth;
 use super::offset::{leave_surface, leave_surface_by};
-use super::variant::{Scattering, Variant};
+use super::variant::{Scattering, Variant, carries_points};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
 use crate::learning::Knowledge;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
@@ -36,6 +36,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         segments.remember_origins(children.len());
     }
     let mut ranks = sampler.ranks();
+    let carries_points = carries_points::<V>(sampler);
     let mut elders = ElderSiblings::default();
     let mut points = [SequencePoint::default(); CHUNK];
     let mut numbers = [[0.0; CHUNK]; 3];
@@ -52,7 +53,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         }
         if let Some(ranks) = &mut ranks {
             for (point, child) in points.iter_mut().zip(children) {
-                *point = ranks.next(paths.pixel(vertices.path[child.parent as usize]));
+                *point = paths.rank(vertices.path[child.parent as usize], ranks);
             }
         } else if sampler.has_sequences() {
             for (point, child) in points.iter_mut().zip(children) {
@@ -115,7 +116,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         segments
             .throughput
             .extend(lanes.clone().map(|lane| throughputs[lane]));
-        if sampler.has_sequences() {
+        if carries_points {
             let points = lanes.clone().map(|lane| points[lane]);
             segments.point.extend(points);
         }

@@ -39,7 +39,8 @@ fn expose_moments<C: Colour>(paths: &CameraPaths<C>, weight: f64, moments: &mut 
         if let Some(rgb) = rgb(paths, path) {
             let weight = weight * f64::from(paths.filter_weight[path]);
             let xyz = xyz_from_srgb(rgb.map(f64::from));
-            moments.add(paths.pixel(path as u32) as usize, xyz, weight);
+            let pixel = paths.pixels.start + paths.pixel(path as u32);
+            moments.add(pixel as usize, xyz, weight);
         }
     }
 }

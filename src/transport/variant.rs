@@ -31,6 +31,11 @@ pub(super) trait Variant: Send + Sync + 'static {
     const INSTANCES: bool;
 }
 
+/// Whether segments carry points of sequences: where particles keep theirs, and where one may draw its material before it has a rank.
+pub(super) fn carries_points<V: Variant>(sampler: &Sampler) -> bool {
+    sampler.carries_points() || V::CHOOSES_LOBES && sampler.has_sequences()
+}
+
 /// A chunk of paths that arrive somewhere. What is known of each is found by those who ask: a variant does not pay for what it
 /// does not want to know.
 pub(super) struct Arrivals<'a, C: Colour> {
