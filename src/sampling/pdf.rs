@@ -26,10 +26,10 @@ impl SolidAnglePdf {
         Self(self.0 * probability)
     }
 
-    /// The density of a strategy that takes `samples` samples where others take one: what its share is weighed by.
+    /// The density of a technique that takes `samples` samples on average where others take one: what its share is weighed by.
     #[inline(always)]
-    pub fn taken_times(self, samples: u32) -> Self {
-        Self(self.0 * samples as f32)
+    pub fn taken_times(self, samples: f32) -> Self {
+        Self(self.0 * samples)
     }
 }
 

@@ -278,6 +278,11 @@ impl Decisions<'_> {
         self.points.is_empty()
     }
 
+    /// Whether the particles of each pixel stand in the order of their places.
+    pub fn are_sorted(&self) -> bool {
+        self.is_lattice
+    }
+
     /// 32 random bits with which particle number `index` decides about its children after `depth` reflections.
     #[inline]
     pub fn bits(&self, index: usize, depth: u32, random: &mut RandomStream) -> u32 {

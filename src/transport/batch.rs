@@ -49,7 +49,8 @@ pub(super) struct Segments<C: Colour> {
     pub point: Vec<SequencePoint>,
     /// What refraction has done to it. Empty in variants that do not refract.
     pub refraction: Vec<Refraction>,
-    /// The density with which its direction was drawn; infinite for camera rays, which no other technique can draw.
+    /// The density with which its direction was drawn, times how many children were expected of the vertex that it left; infinite for camera rays, which
+    /// no other technique can draw.
     pub direction_pdf: Vec<SolidAnglePdf>,
     /// The surface that each left, where next-event estimation chose its light by it; else empty.
     pub origins: Vec<Receiver>,

@@ -15,14 +15,15 @@ use crate::learning::Knowledge;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use, power_heuristic};
 use crate::scene::{BsdfValues, SurfaceSamples};
 use crate::spectrum::{Colour, SpectrumArithmetic};
+use crate::walk::ExpectedCount;
 
 /// Shadow rays end this share of their length before the light, so that they do not meet it.
 const SHADOW_END: f32 = 1.0 - 1e-4;
 
 /// Draws light for every vertex and fills `shadow` with the rays that decide whether it arrives.
 ///
-/// The emitter is chosen by what it can contribute; a path's contribution is
-/// MIS-weighted against hitting the same light by chance.
+/// The emitter is chosen by what it can contribute; a path's contribution is MIS-weighted against hitting the same light by chance, with as many
+/// children as are `expected` of each vertex.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -31,6 +32,7 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     engine: &Engine,
     paths: &CameraPaths<C>,
     vertices: &Vertices<C, V>,
+    expected: &[ExpectedCount],
     sampler: &mut Sampler,
     knowledge: Option<&Knowledge>,
     shadow: &mut ShadowRays<C>,
@@ -74,7 +76,8 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
         normals.load(vertices.geometric_normal.slices(chunk.clone()));
         let clearances = vertices.clearances(chunk.clone(), &mut clearances);
         rays.aim(&positions, &normals, clearances, &lights);
-        rays.weigh(&lights.pdf, &lights.probability, &bsdfs.pdf, samples);
+        let expected = &expected[chunk.clone()];
+        rays.weigh(&lights, &bsdfs.pdf, expected, samples);
 
         let mut kept = KeptLanes::none();
         let mut contributions = [C::Spectrum::ZERO; CHUNK];
@@ -166,24 +169,27 @@ impl ShadowChunk {
         }
     }
 
-    /// Weighs light that was drawn with `light_pdf` from an emitter chosen with `probability`, where the bsdf would have drawn
-    /// its direction with `bsdf_pdf`.
+    /// Weighs the `lights` that were drawn, where the bsdf would have drawn their directions with `bsdf_pdf` for each of the children that are `expected`.
     #[inline(always)]
-    fn weigh(
+    fn weigh<C: Colour>(
         &mut self,
-        light_pdf: &[f32; CHUNK],
-        probability: &[f32; CHUNK],
+        lights: &LightChunk<C>,
         bsdf_pdf: &[f32; CHUNK],
+        expected: &[ExpectedCount],
         samples: SurfaceSamples,
     ) {
+        let mut children = [0.0; CHUNK];
+        for (children, expected) in children.iter_mut().zip(expected) {
+            *children = expected.as_f32() * samples.directions as f32;
+        }
+        let emitters = samples.emitters as f32;
         for i in 0..CHUNK {
-            let probability = probability[i];
-            let light_pdf = SolidAnglePdf(light_pdf[i])
+            let probability = lights.probability[i];
+            let light_pdf = SolidAnglePdf(lights.pdf[i])
                 .chosen_with(probability)
-                .taken_times(samples.emitters);
-            let bsdf_pdf = SolidAnglePdf(bsdf_pdf[i]).taken_times(samples.directions);
-            let weight =
-                power_heuristic(light_pdf, bsdf_pdf) / (samples.emitters as f32 * probability);
+                .taken_times(emitters);
+            let bsdf_pdf = SolidAnglePdf(bsdf_pdf[i]).taken_times(children[i]);
+            let weight = power_heuristic(light_pdf, bsdf_pdf) / (emitters * probability);
             self.weight[i] = if probability > 0.0 { weight } else { 0.0 };
         }
     }

@@ -215,12 +215,11 @@ impl Engine {
             }
             None => 1.0,
         };
-        let samples = &self.settings.samples;
         power_heuristic(
-            direction_pdf.taken_times(samples.directions),
+            direction_pdf,
             light_pdf
                 .chosen_with(chosen_with)
-                .taken_times(samples.emitters),
+                .taken_times(self.settings.samples.emitters as f32),
         )
     }
 }

@@ -1,7 +1,7 @@
 //! The engine: batches of path states, and the stages that move them one bounce on.
 //!
 //! ```text
-//!  camera -> intersect -> emission -> direct -> walk -> scatter -> ... -> splat
+//!  camera -> intersect -> emission -> walk -> direct -> scatter -> ... -> splat
 //!                ^                                         |
 //!                +-----------------------------------------+
 //! ```
@@ -9,7 +9,8 @@
 //! A batch holds all camera paths of one tile in one pass. Path states are structures of arrays: [`Segments`] are rays
 //! on their way, [`Vertices`] the surface points that they reached. Every stage is one file and one loop. Children of
 //! one parent stand side by side from the strategy's decision on; so they share hit point, material and direct light,
-//! and their rays are neighbours in the stream.
+//! and their rays are neighbours in the stream. The strategy decides before light is sampled: how light sampling and the children share the light of
+//! an emitter depends on how many children are expected (multi-sample MIS, Veach 1997, section 9.2.4).
 
 mod accelerator;
 mod arrange;

@@ -181,11 +181,26 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             stopwatch.lap(Stage::Emission, &mut self.statistics.stages);
             self.statistics.vertices += self.vertices.len() as u64;
             self.statistics.deepest = self.statistics.deepest.max(depth + 1);
+            self.statistics.walk += walk_stage::decide(
+                engine.strategy(),
+                memory,
+                &self.paths,
+                &self.vertices,
+                depth,
+                sampler,
+                &mut self.decision,
+            );
+            if engine.settings.samples.directions != 1 {
+                let offspring = &mut self.decision.offspring;
+                offspring.split_each(engine.settings.samples.directions);
+            }
+            stopwatch.lap(Stage::Walk, &mut self.statistics.stages);
             if next_event {
                 direct::sample_lights(
                     engine,
                     &self.paths,
                     &self.vertices,
+                    self.decision.offspring.expected_counts(),
                     sampler,
                     guide,
                     &mut self.shadow,
@@ -203,25 +218,11 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 );
                 stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
             }
-            self.statistics.walk += walk_stage::decide(
-                engine.strategy(),
-                memory,
-                &self.paths,
-                &self.vertices,
-                depth,
-                sampler,
-                &mut self.decision,
-            );
-            let offspring = &mut self.decision.offspring;
-            if engine.settings.samples.directions != 1 {
-                offspring.split_each(engine.settings.samples.directions);
-            }
-            stopwatch.lap(Stage::Walk, &mut self.statistics.stages);
             scatter::scatter(
                 engine,
                 &self.paths,
                 &self.vertices,
-                offspring.children(),
+                self.decision.offspring.children(),
                 sampler,
                 guide,
                 &mut self.segments,

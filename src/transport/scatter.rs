@@ -120,9 +120,11 @@ pub(super) fn scatter<C: Colour, V: Variant>(
             let points = lanes.clone().map(|lane| points[lane]);
             segments.point.extend(points);
         }
-        segments
-            .direction_pdf
-            .extend(lanes.clone().map(|lane| SolidAnglePdf(samples.pdf[lane])));
+        let pdfs = lanes.clone().map(|lane| {
+            let expected = 1.0 / children[lane].weight;
+            SolidAnglePdf(samples.pdf[lane]).taken_times(expected)
+        });
+        segments.direction_pdf.extend(pdfs);
         if learns {
             let birth = |lane: usize| {
                 let parent = parent(lane);

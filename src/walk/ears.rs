@@ -21,7 +21,7 @@
 //!
 //! **When it wins:** where paths differ much in what they are worth, as under light that arrives indirectly.
 
-use super::learned::{before_lessons, bound};
+use super::learned::{EfficientCounts, before_lessons, bound};
 use super::{Objective, Population, Strategy};
 
 /// Makes variance times cost least for each path; see the [module](self).
@@ -62,7 +62,12 @@ impl Strategy for Ears {
             *nu = before_lessons(population, index);
         }
         if let Some(learned) = &population.learned {
-            learned.efficient_counts(self.objective, 1.0, nu);
+            let rule = EfficientCounts {
+                objective: self.objective,
+                dead_zone: 1.0,
+                shared: 0.0,
+            };
+            learned.efficient_counts(rule, nu);
         }
         bound(population, nu);
     }

@@ -56,6 +56,12 @@ impl ExpectedCount {
         ONE as f32 / self.0 as i64 as f32
     }
 
+    /// nu, rounded.
+    #[inline(always)]
+    pub fn as_f32(self) -> f32 {
+        self.0 as i64 as f32 * (1.0 / ONE as f32)
+    }
+
     /// The children that are certain: floor(nu).
     #[inline]
     pub(super) fn whole(self) -> u64 {

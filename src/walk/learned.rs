@@ -48,23 +48,39 @@ impl Learned<'_> {
     /// Writes the efficient numbers of children into `nu`, where something is known of a particle: of all counts they make variance times cost least,
     ///
     /// ```text
-    /// nu_r = t sqrt(E[v^2] / c),   nu_s = t sqrt(Var[v] / c),   t = W a / I sqrt(image cost / image variance)
+    /// nu_r = t sqrt((E[v^2] - s E[v]^2) / c),   nu_s = t sqrt(Var[v] / c),   t = W a / I sqrt(image cost / image variance)
     /// ```
     ///
-    /// (Rath et al. 2022, "EARS: Efficiency-Aware Russian Roulette and Splitting", section 4). Ending a path is decided by nu_r, for it risks
-    /// everything; splitting it by nu_s, for copies share their mean. Between them lies a range in which a path goes on alone. It reaches from nu_r = 1 / z
-    /// to nu_r = z at least, and counts beyond are drawn to 1 by that factor z, the `dead_zone`, at least 1.
-    pub(super) fn efficient_counts(&self, objective: Objective, dead_zone: f32, nu: &mut [f32]) {
-        efficient_counts(self, objective, dead_zone, nu);
+    /// (Rath et al. 2022, "EARS: Efficiency-Aware Russian Roulette and Splitting", section 4, where s = 0). Ending a path is decided by nu_r, for it risks
+    /// everything, but for what neighbours share where they round jointly; splitting it by nu_s, for copies share their mean. Between them lies a range in
+    /// which a path goes on alone. It reaches from nu_r = 1 / z to nu_r = z at least, and counts beyond are drawn to 1 by that factor z.
+    pub(super) fn efficient_counts(&self, rule: EfficientCounts, nu: &mut [f32]) {
+        efficient_counts(self, rule, nu);
     }
+}
+
+/// What [`Learned::efficient_counts`] is to make of what was learned.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EfficientCounts {
+    /// Which error they make small.
+    pub objective: Objective,
+    /// z, at least 1.
+    pub dead_zone: f32,
+    /// s, from 0 to 1: the part of the squared mean that is not at risk where a path ends.
+    pub shared: f32,
 }
 
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn efficient_counts(learned: &Learned, objective: Objective, dead_zone: f32, nu: &mut [f32]) {
+fn efficient_counts(learned: &Learned, rule: EfficientCounts, nu: &mut [f32]) {
     let [least, most] = BOUNDS;
+    let EfficientCounts {
+        objective,
+        dead_zone,
+        shared,
+    } = rule;
     let moments = learned.mean.iter().zip(learned.square).zip(learned.cost);
     let pixels = learned.reflected.iter().zip(learned.brightness);
     for (nu, (((&mean, &square), &cost), (&reflected, &brightness))) in
@@ -76,7 +92,7 @@ fn efficient_counts(learned: &Learned, objective: Objective, dead_zone: f32, nu:
                 Objective::Mse => learned.absolute_factor,
             };
         let count = |spread: f32| t * (spread / cost).sqrt();
-        let roulette = count(square);
+        let roulette = count((square - shared * mean * mean).max(0.0));
         let splitting = count((square - mean * mean).max(0.0));
         let drawn_up = roulette * dead_zone;
         let drawn_down = splitting.min(roulette / dead_zone);

@@ -6,11 +6,12 @@
 //! **By what was learned** (`rule` `learned`, the default), the counts make variance times cost least:
 //!
 //! ```text
-//! nu_k = W_k a_k / I sqrt(E[v^2] / c) sqrt(image cost / image relative variance)
+//! nu_k = W_k a_k / I sqrt((E[v^2] - s E[v]^2) / c) sqrt(image cost / image relative variance)
 //! ```
 //!
-//! v is what a child brings back, c the rays that it takes, I the brightness of the pixel. A dead zone leaves particles alone from 2/3 to 3/2, and draws
-//! other counts to 1 by the same factor. No count above 1 is more than Var\[v\] instead of E\[v^2\] would make it, for copies of what does not vary are
+//! v is what a child brings back, c the rays that it takes, I the brightness of the pixel, and s the part of what neighbours have in common that they hold in
+//! balance by rounding jointly: 1/2 where the sampler sorts populations, else 0. A dead zone leaves particles alone from 2/3 to 3/2, and draws
+//! other counts to 1 by the same factor. No count above 1 is more than Var\[v\] would make it, for copies of what does not vary are
 //! worth nothing; nu is kept from 0.02 to 20, and all particles together get at most four children for each camera path. Before anything is learned,
 //! paths survive by half where their importance is below a tenth.
 //!
@@ -47,11 +48,14 @@ use std::str::FromStr;
 
 use serde::Serialize;
 
-use super::learned::{before_lessons, bound};
+use super::learned::{EfficientCounts, before_lessons, bound};
 use super::{ExpectedCount, Objective, Population, Rounding, Scope, SettingError, Strategy};
 
 /// By what factor the range is wider in which particles are left alone.
 const DEAD_ZONE: f32 = 1.5;
+
+/// The part of the squared mean that is not at risk where populations are sorted: what neighbours have in common, they hold in balance.
+const SHARED: f32 = 0.5;
 
 /// By what a filter chooses the expected counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -216,7 +220,13 @@ impl Strategy for ParticleFilter {
             *nu = before_lessons(population, index);
         }
         if let Some(learned) = &population.learned {
-            learned.efficient_counts(objective, DEAD_ZONE, nu);
+            let are_sorted = population.points.is_some_and(|points| points.are_sorted());
+            let rule = EfficientCounts {
+                objective,
+                dead_zone: DEAD_ZONE,
+                shared: if are_sorted { SHARED } else { 0.0 },
+            };
+            learned.efficient_counts(rule, nu);
         }
         bound(population, nu);
     }

@@ -1,6 +1,7 @@
 //! The strategies that learn: what they ask for where something is known, and where nothing is.
 
 use super::*;
+use crate::sampling::{Decisions, Sampler, SamplerKind, SequencePoint, StreamKey};
 use crate::walk::{AdjointRoulette, Ears, Learned, Objective};
 
 /// What is known of particles of importance 1 and albedo 1/2, with a value of mean 2 and the given mean squares, in a pixel of brightness 1.
@@ -26,6 +27,11 @@ impl Known {
 
     /// What `strategy` asks for.
     fn counts(&self, strategy: &dyn Strategy) -> Vec<f32> {
+        self.counts_at(strategy, None)
+    }
+
+    /// What it asks for where the particles are at such `points`.
+    fn counts_at(&self, strategy: &dyn Strategy, points: Option<Decisions>) -> Vec<f32> {
         let count = self.square.len();
         let (importance, albedo) = (vec![1.0; count], vec![0.5; count]);
         let population = Population {
@@ -35,7 +41,7 @@ impl Known {
             group: &vec![0; count],
             paths: 1000,
             depth: 0,
-            points: None,
+            points,
             learned: Some(Learned {
                 mean: &self.mean,
                 square: &self.square,
@@ -70,6 +76,29 @@ fn the_filter_asks_for_the_root_of_second_moment_over_cost() {
     let mut known = Known::new(&[4.0, 16.0]);
     known.brightness = vec![0.25; 2];
     assert_eq!(known.counts(&filter(Objective::Relative)), [1.0, 4.0 / 1.5]);
+}
+
+/// Half of what neighbours have in common is not at risk where they stand side by side: here half of 4.
+#[test]
+fn the_filter_ends_more_paths_where_neighbours_hold_the_balance() {
+    let known = Known::new(&[4.0, 2.0 + 64.0, 1.0, 1e9]);
+    let points = [SequencePoint::default(); 4];
+    let key = StreamKey {
+        seed: 1,
+        tile: 0,
+        pass: 0,
+    };
+    let counts = |kind, strategy: &dyn Strategy| {
+        let sampler = Sampler::new(kind, key, 0, 1);
+        known.counts_at(strategy, sampler.decisions(&points))
+    };
+    let (filter, ears) = (filter(Objective::Relative), Ears::default());
+    let sorted = counts(SamplerKind::ArrayQmc, &filter);
+    assert_eq!(sorted, [0.75 * 0.5_f32.sqrt(), 2.0 / 1.5, 0.02, 20.0]);
+    for kind in [SamplerKind::Independent, SamplerKind::Sobol] {
+        assert_eq!(counts(kind, &filter), known.counts(&filter));
+    }
+    assert_eq!(counts(SamplerKind::ArrayQmc, &ears), known.counts(&ears));
 }
 
 /// However much is asked for, a generation has at most four children for each camera path.
