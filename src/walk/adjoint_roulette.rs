@@ -12,13 +12,14 @@
 //!
 //! v is what a child brings back, as learned, and I the brightness of the pixel.
 //!
+//! At mirrors and glass, whose light depends on direction more than on place, no path is split, and none given up more readily than without lessons.
 //! Before anything is learned, paths survive by half where their importance is below a tenth.
 //!
 //! **Settings:** none.
 //!
 //! **When it wins:** as `ears`; it looks at what paths are expected to bring alone, not at how much that varies, nor at what it costs.
 
-use super::learned::{BOUNDS, before_lessons, bound};
+use super::learned::{BOUNDS, before_lessons, bound, of_discrete_directions};
 use super::{Population, Strategy};
 
 /// The ratio of the window's ends.
@@ -62,7 +63,12 @@ impl Strategy for AdjointRoulette {
             } else {
                 (expected / high).max(1.0)
             };
-            *nu = count.clamp(least, most);
+            let count = count.clamp(least, most);
+            *nu = if population.shininess[index] == f32::INFINITY {
+                of_discrete_directions(count, before_lessons(population, index))
+            } else {
+                count
+            };
         }
         bound(population, nu);
     }

@@ -14,6 +14,7 @@
 //! for it risks everything; splitting it by the variance, for copies share their mean: between them lies a range in which a path goes on alone. The ten
 //! pixels that vary most do not count for the image's cost and variance, as in the authors' implementation.
 //!
+//! At mirrors and glass, whose light depends on direction more than on place, no path is split, and none given up more readily than without lessons.
 //! All particles together get at most four children for each camera path. Before anything is learned, paths survive by half where their importance is below a tenth.
 //!
 //! **Settings**
@@ -67,7 +68,7 @@ impl Strategy for Ears {
                 dead_zone: 1.0,
                 shared: 0.0,
             };
-            learned.efficient_counts(rule, nu);
+            learned.efficient_counts(rule, population.shininess, nu);
         }
         bound(population, nu);
     }

@@ -54,8 +54,15 @@ impl Learned<'_> {
     /// (Rath et al. 2022, "EARS: Efficiency-Aware Russian Roulette and Splitting", section 4, where s = 0). Ending a path is decided by nu_r, for it risks
     /// everything, but for what neighbours share where they round jointly; splitting it by nu_s, for copies share their mean. Between them lies a range in
     /// which a path goes on alone. It reaches from nu_r = 1 / z to nu_r = z at least, and counts beyond are drawn to 1 by that factor z.
-    pub(super) fn efficient_counts(&self, rule: EfficientCounts, nu: &mut [f32]) {
-        efficient_counts(self, rule, nu);
+    ///
+    /// Mirrors and glass, whose `shininess` is infinite, are [left alone](of_discrete_directions): `nu` says what they would get without lessons.
+    pub(super) fn efficient_counts(
+        &self,
+        rule: EfficientCounts,
+        shininess: &[f32],
+        nu: &mut [f32],
+    ) {
+        efficient_counts(self, rule, shininess, nu);
     }
 }
 
@@ -74,7 +81,7 @@ pub(super) struct EfficientCounts {
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn efficient_counts(learned: &Learned, rule: EfficientCounts, nu: &mut [f32]) {
+fn efficient_counts(learned: &Learned, rule: EfficientCounts, shininess: &[f32], nu: &mut [f32]) {
     let [least, most] = BOUNDS;
     let EfficientCounts {
         objective,
@@ -83,8 +90,9 @@ fn efficient_counts(learned: &Learned, rule: EfficientCounts, nu: &mut [f32]) {
     } = rule;
     let moments = learned.mean.iter().zip(learned.square).zip(learned.cost);
     let pixels = learned.reflected.iter().zip(learned.brightness);
-    for (nu, (((&mean, &square), &cost), (&reflected, &brightness))) in
-        nu.iter_mut().zip(moments.zip(pixels))
+    let counts = nu.iter_mut().zip(shininess);
+    for ((nu, &shininess), (((&mean, &square), &cost), (&reflected, &brightness))) in
+        counts.zip(moments.zip(pixels))
     {
         let t = reflected
             * match objective {
@@ -101,12 +109,32 @@ fn efficient_counts(learned: &Learned, rule: EfficientCounts, nu: &mut [f32]) {
         } else {
             drawn_down.clamp(1.0, most)
         };
+        let efficient = if shininess == f32::INFINITY {
+            of_discrete_directions(efficient, *nu)
+        } else {
+            efficient
+        };
         // No jumps: particles side by side are looked at together.
         *nu = if is_known(square, brightness) {
             efficient
         } else {
             *nu
         };
+    }
+}
+
+/// The number of children at a vertex that passes light on in discrete directions, where `efficient` would be right on average over all directions, and
+/// `before_lessons` without having learned.
+///
+/// What goes on there depends on direction more than on place, and of that nothing was learned: no path is split, and none given up more readily than without
+/// lessons.
+#[inline(always)]
+pub(super) fn of_discrete_directions(efficient: f32, before_lessons: f32) -> f32 {
+    let at_most_one = if efficient < 1.0 { efficient } else { 1.0 };
+    if at_most_one > before_lessons {
+        at_most_one
+    } else {
+        before_lessons
     }
 }
 

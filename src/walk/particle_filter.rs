@@ -12,7 +12,7 @@
 //! v is what a child brings back, c the rays that it takes, I the brightness of the pixel, and s the part of what neighbours have in common that they hold in
 //! balance by rounding jointly: 1/2 where the sampler sorts populations, else 0. A dead zone leaves particles alone from 2/3 to 3/2, and draws
 //! other counts to 1 by the same factor. No count above 1 is more than Var\[v\] would make it, for copies of what does not vary are
-//! worth nothing; nu is kept from 0.02 to 20, and all particles together get at most four children for each camera path. Before anything is learned,
+//! worth nothing; nu is kept from 0.02 to 20, at mirrors and glass it is at most 1, and all particles together get at most four children for each camera path. Before anything is learned,
 //! paths survive by half where their importance is below a tenth.
 //!
 //! **By importance** (`rule` `importance`), as the paper has it, the resampling equalises the importance:
@@ -226,7 +226,7 @@ impl Strategy for ParticleFilter {
                 dead_zone: DEAD_ZONE,
                 shared: if are_sorted { SHARED } else { 0.0 },
             };
-            learned.efficient_counts(rule, nu);
+            learned.efficient_counts(rule, population.shininess, nu);
         }
         bound(population, nu);
     }

@@ -11,6 +11,7 @@ struct Known {
     cost: Vec<f32>,
     reflected: Vec<f32>,
     brightness: Vec<f32>,
+    shininess: Vec<f32>,
 }
 
 impl Known {
@@ -22,6 +23,7 @@ impl Known {
             cost: all(4.0),
             reflected: all(0.5),
             brightness: all(1.0),
+            shininess: all(0.0),
         }
     }
 
@@ -37,7 +39,7 @@ impl Known {
         let population = Population {
             importance: &importance,
             albedo: &albedo,
-            shininess: &vec![0.0; count],
+            shininess: &self.shininess,
             group: &vec![0; count],
             paths: 1000,
             depth: 0,
@@ -99,6 +101,24 @@ fn the_filter_ends_more_paths_where_neighbours_hold_the_balance() {
         assert_eq!(counts(kind, &filter), known.counts(&filter));
     }
     assert_eq!(counts(SamplerKind::ArrayQmc, &ears), known.counts(&ears));
+}
+
+/// Of a mirror, what was learned says how bright its surroundings are on average: not what is seen in it.
+#[test]
+fn mirrors_neither_split_paths_nor_give_them_up() {
+    let mut known = Known::new(&[1e-9, 1e9]);
+    known.shininess = vec![f32::INFINITY; 2];
+    let strategies: [&dyn Strategy; 3] = [
+        &filter(Objective::Relative),
+        &Ears::default(),
+        &AdjointRoulette,
+    ];
+    for strategy in strategies {
+        assert_eq!(known.counts(strategy), [1.0, 1.0], "{strategy:?}");
+        known.mean = vec![1e-3, 1e3];
+    }
+    let known = Known::new(&[1e-9, 1e9]);
+    assert_eq!(known.counts(&Ears::default()), [0.02, 20.0]);
 }
 
 /// However much is asked for, a generation has at most four children for each camera path.
