@@ -28,21 +28,23 @@ pub struct PixelObservation {
     pub paths: u32,
     /// The sum of their radiance.
     pub radiance: f32,
-    /// The sum of the squares of their radiance.
+    /// The sum of the part of it that counts as noise: all, or all that was not seen directly.
+    pub noisy: f32,
+    /// The sum of the squares of that part.
     pub square: f32,
     /// The sum of their rays.
     pub rays: f32,
 }
 
 impl PixelObservation {
-    /// The variance of the radiance of its paths; about `brightness`, where there is only one.
+    /// The variance of the noisy part of its paths' radiance; where there is only one path, that of all radiance about `brightness`.
     pub(super) fn variance(&self, brightness: f64) -> f64 {
         let count = f64::from(self.paths);
-        let [mean, square] = [self.radiance, self.square].map(|sum| f64::from(sum) / count);
         if self.paths > 1 {
+            let [mean, square] = [self.noisy, self.square].map(|sum| f64::from(sum) / count);
             ((square - mean * mean) * count / (count - 1.0)).max(0.0)
         } else {
-            (mean - brightness).powi(2)
+            (f64::from(self.radiance) - brightness).powi(2)
         }
     }
 
@@ -53,6 +55,7 @@ impl PixelObservation {
         }
         self.paths += other.paths;
         self.radiance += other.radiance;
+        self.noisy += other.noisy;
         self.square += other.square;
         self.rays += other.rays;
     }
@@ -63,6 +66,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_was_set_aside_does_not_vary() {
+        // Of four paths, two saw a lamp of radiance 10 and two found 1 reflected.
+        let pixel = PixelObservation {
+            pixel: 0,
+            paths: 4,
+            radiance: 22.0,
+            noisy: 2.0,
+            square: 2.0,
+            rays: 8.0,
+        };
+        assert!((pixel.variance(5.5) - 1.0 / 3.0).abs() < 1e-9);
+        let single = PixelObservation { paths: 1, ..pixel };
+        assert_eq!(single.variance(20.0), 4.0);
+    }
+
+    #[test]
     fn what_is_not_finite_is_not_observed() {
         let mut pixel = PixelObservation::default();
         for square in [1.0, f32::NAN, f32::INFINITY, 4.0] {
@@ -70,6 +89,7 @@ mod tests {
                 pixel: 0,
                 paths: 1,
                 radiance: 1.0,
+                noisy: 1.0,
                 square,
                 rays: 5.0,
             });

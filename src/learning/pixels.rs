@@ -162,6 +162,7 @@ mod tests {
                 paths: 2,
                 // One path brought it all.
                 radiance,
+                noisy: radiance,
                 square: radiance * radiance,
                 rays: 10.0,
             }

@@ -50,6 +50,8 @@ pub(super) struct Lineage {
     generations: Vec<Generation>,
     /// How many of them are in use.
     depth: usize,
+    /// What each segment of the first generation saw emitted, if that is set aside.
+    seen: Vec<f32>,
     /// What was observed; pixels are numbered within the tile.
     pub observed: Observations,
 }
@@ -58,6 +60,7 @@ impl Lineage {
     /// A new batch begins.
     pub fn restart(&mut self) {
         self.depth = 0;
+        self.seen.clear();
     }
 
     /// The generation of `segments` begins.
@@ -77,6 +80,17 @@ impl Lineage {
     /// The generation that began last.
     pub fn youngest(&mut self) -> Option<&mut Generation> {
         self.generations[..self.depth].last_mut()
+    }
+
+    /// Sets aside what the first generation has brought so far, when that is what camera paths see emitted: it is not to count as noise.
+    ///
+    /// It depends on nothing but what a camera path starts with. Where sequences spread that evenly, the edge of a lamp is smooth long before anything else, however much
+    /// single paths differ there.
+    pub fn set_seen_aside(&mut self) {
+        if let [first, ..] = &self.generations[..self.depth] {
+            make_room(&mut self.seen, first.light.len());
+            self.seen.extend_from_slice(&first.light);
+        }
     }
 
     /// All light has arrived: every segment passes on to its parent what it and its descendants brought.
@@ -112,11 +126,14 @@ impl Lineage {
         let pixels = &mut pixels[first_of_batch..];
         if let Some(first) = self.generations[..self.depth].first() {
             let brought = first.births.iter().zip(&first.light).zip(&first.rays);
-            for ((birth, &light), &rays) in brought {
+            let seen = self.seen.iter().copied().chain(std::iter::repeat(0.0));
+            for (((birth, &light), &rays), seen) in brought.zip(seen) {
                 let pixel = &mut pixels[(birth.parent / paths.samples) as usize];
                 pixel.paths += 1;
                 pixel.radiance += light;
-                pixel.square += light * light;
+                let noisy = light - seen;
+                pixel.noisy += noisy;
+                pixel.square += noisy * noisy;
                 pixel.rays += rays;
             }
         }
@@ -131,5 +148,47 @@ pub(super) fn first_births(births: &mut Vec<Birth>, paths: usize) {
             parent: path,
             ..Birth::default()
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::{Rgb, Spectrum};
+
+    /// Two paths of one pixel: one sees a lamp of radiance 10, to the other light of radiance 1 is reflected.
+    fn observed(sets_aside: bool) -> PixelObservation {
+        let mut paths = CameraPaths::<Rgb>::new();
+        paths.restart(0..1, 2);
+        let mut segments = Segments::<Rgb>::new();
+        segments.restart(2);
+        first_births(&mut segments.births, 2);
+        segments.path.extend([0, 1]);
+        let mut lineage = Lineage::default();
+        lineage.restart();
+        lineage.begin(&segments);
+        let add = |lineage: &mut Lineage, segment, light| {
+            let youngest = lineage.youngest().expect("a generation has begun");
+            youngest.add(segment, Spectrum([light; 3]));
+        };
+        add(&mut lineage, 0, 10.0);
+        if sets_aside {
+            lineage.set_seen_aside();
+        }
+        add(&mut lineage, 1, 1.0);
+        lineage.conclude(&paths);
+        lineage.observed.pixels[0]
+    }
+
+    #[test]
+    fn what_is_seen_is_bright_but_no_noise_if_it_is_set_aside() {
+        let all = observed(false);
+        assert_eq!((all.radiance, all.noisy, all.square), (11.0, 11.0, 101.0));
+        let aside = observed(true);
+        assert_eq!(
+            (aside.radiance, aside.noisy, aside.square),
+            (11.0, 1.0, 1.0)
+        );
+        assert_eq!((aside.paths, aside.rays), (2, 2.0));
     }
 }

@@ -175,6 +175,9 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 depth,
                 job.learns.then(|| self.lineage.youngest()).flatten(),
             );
+            if depth == 0 && job.learns && sampler.has_sequences() {
+                self.lineage.set_seen_aside();
+            }
             if let Some(knowledge) = job.knowledge.filter(|_| remembers) {
                 remember::remember(knowledge, &mut self.vertices);
             }
