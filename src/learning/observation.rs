@@ -95,5 +95,6 @@ mod tests {
             });
         }
         assert_eq!((pixel.paths, pixel.square, pixel.rays), (2, 5.0, 10.0));
+        assert_eq!((pixel.radiance, pixel.noisy), (2.0, 2.0));
     }
 }
