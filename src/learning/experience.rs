@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::mixture::MixtureSums;
 use super::square_warp::SIDE;
 use super::{CellTree, Insight, Observation, Observations, PixelObservation, SquareWarp};
 use crate::sampling::FRAME_CLASSES;
@@ -41,6 +42,7 @@ struct Sums {
     value: f32,
     square: f32,
     cost: f32,
+    mixture: MixtureSums,
     bins: [[BinSums; SIDE]; SIDE],
 }
 
@@ -65,6 +67,7 @@ impl Sums {
         self.value += share * other.value;
         self.square += share * other.square;
         self.cost += share * other.cost;
+        self.mixture.add(&other.mixture, share);
         let bins = self.bins.as_flattened_mut().iter_mut();
         for (bin, other) in bins.zip(other.bins.as_flattened()) {
             bin.add(*other, share);
@@ -76,6 +79,9 @@ impl Sums {
         self.value += observation.value;
         self.square += observation.value * observation.value;
         self.cost += observation.cost;
+        if let Some(odds) = &observation.odds {
+            self.mixture.observe(odds, observation.value);
+        }
         if let Some(bin) = observation.bin {
             let [row, column] = bin.place();
             let bin = &mut self.bins[row][column];
@@ -100,6 +106,7 @@ impl Sums {
             square: filled(self.square, family.square),
             cost: filled(self.cost, family.cost),
             guides,
+            mixed_share: family.mixture.best(),
             warp: if guides { warp } else { SquareWarp::UNIFORM },
         }
     }
@@ -234,6 +241,7 @@ mod tests {
         Observation {
             address,
             bin: Some(Bin::of([0.5, 0.9])),
+            odds: None,
             radiance: 2.0 * value,
             value,
             cost: 3.0 * value,

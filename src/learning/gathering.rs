@@ -55,6 +55,7 @@ mod tests {
         let observation = |value| Observation {
             address: 3,
             bin: None,
+            odds: None,
             radiance: value,
             value,
             cost: 1.0,

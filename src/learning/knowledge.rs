@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::{CellTree, Experience, PixelKnowledge, SquareWarp};
+use super::{CellTree, Experience, GuidedShare, PixelKnowledge, SquareWarp};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{FRAME_CLASSES, Frame};
 use crate::scene::ImageSize;
@@ -25,6 +25,8 @@ pub struct Insight {
     pub cost: f32,
     /// Whether directions gain by being drawn from where it comes.
     pub guides: bool,
+    /// How many of them, at surfaces with broad lobes of their own; it means nothing where they do not gain.
+    pub mixed_share: GuidedShare,
     /// From where, on the square that directions are drawn from; uniform where they do not gain.
     pub warp: SquareWarp,
 }
@@ -36,6 +38,7 @@ impl Insight {
         square: 0.0,
         cost: 1.0,
         guides: false,
+        mixed_share: GuidedShare::UNKNOWN,
         warp: SquareWarp::UNIFORM,
     };
 }
@@ -170,6 +173,7 @@ mod tests {
         Observation {
             address,
             bin: None,
+            odds: None,
             radiance: value,
             value,
             cost: 1.0,

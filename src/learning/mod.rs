@@ -8,6 +8,7 @@
 //! - [`cell_tree`]: space, divided where there are many observations
 //! - [`experience`]: sums of observations, for each cell and each of six classes of normals
 //! - [`gathering`]: observations of tiles, in their order
+//! - [`mixture`]: how many directions are guided where surfaces have lobes of their own
 //! - [`observation`]: what is observed
 //! - [`pixels`]: how bright the image is
 //! - [`reliance`]: which of it a render goes by
@@ -18,6 +19,7 @@ pub mod cell_tree;
 pub mod experience;
 pub mod gathering;
 pub mod knowledge;
+pub mod mixture;
 pub mod observation;
 pub mod pixels;
 pub mod reliance;
@@ -27,6 +29,7 @@ pub use cell_tree::CellTree;
 pub use experience::Experience;
 pub use gathering::{Gathering, Observations};
 pub use knowledge::{Insight, Knowledge};
+pub use mixture::{GuidedShare, MixedDirection, Odds};
 pub use observation::{Observation, PixelObservation};
 pub use pixels::PixelKnowledge;
 pub use reliance::Reliance;

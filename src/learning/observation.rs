@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::mixture::Odds;
 use super::square_warp::Bin;
 
 /// What one path segment brought back to the vertex that it had left.
@@ -11,6 +12,8 @@ pub struct Observation {
     pub address: u32,
     /// The direction of the segment, if it is one of those that are learned.
     pub bin: Option<Bin>,
+    /// How likely the direction would have been with other shares of guided directions, where they are mixed with others.
+    pub odds: Option<Odds>,
     /// The radiance that came along it.
     pub radiance: f32,
     /// What it was worth: an estimate of the light that the vertex reflects, with albedo 1.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::variant::{Arrival, Arrivals, Scattering, Variant};
+use super::variant::{Arrival, Arrivals, Guiding, Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::{Frame, Sampler};
 use crate::scene::{
@@ -122,14 +122,14 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
     }
 
     #[inline]
-    fn guided_share(&self) -> f32 {
+    fn guiding(&self) -> Guiding {
         if !self.has_smooth_lobe() {
-            return 0.0;
+            return Guiding::None;
         }
         match self.bsdf {
-            Bsdf::Plain(Model::Diffuse(_)) => 1.0,
+            Bsdf::Plain(Model::Diffuse(_)) => Guiding::Alone,
             // What arrives within a narrow lobe is not learned.
-            _ => 0.5 / (1.0 + self.shininess() * (1.0 / NARROW)),
+            _ => Guiding::Mixed(1.0 / (1.0 + self.shininess() * (1.0 / NARROW))),
         }
     }
 

@@ -7,9 +7,9 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::variant::Scattering;
+use super::variant::{Guiding, Scattering};
 use crate::lanes::{CHUNK, VectorLanes};
-use crate::learning::{Bin, Knowledge, SquareWarp};
+use crate::learning::{Bin, Knowledge, MixedDirection, Odds, SquareWarp};
 use crate::sampling::warp;
 use crate::scene::{BsdfSamples, BsdfValues};
 use crate::spectrum::SpectrumArithmetic;
@@ -19,6 +19,8 @@ pub(super) struct Guidance<'k> {
     warps: [&'k SquareWarp; CHUNK],
     /// The share of directions that are drawn from the warped square.
     share: [f32; CHUNK],
+    /// Where they are mixed with the surface's own: the part of a [`GuidedShare`](crate::learning::GuidedShare) that the surface makes use of.
+    reach: [f32; CHUNK],
     /// The density of the point to which each was warped.
     density: [f32; CHUNK],
     /// Which lanes draw from the warped square though it is mixed with lobes.
@@ -31,6 +33,7 @@ impl<'k> Guidance<'k> {
         Self {
             warps: [&SquareWarp::UNIFORM; CHUNK],
             share: [0.0; CHUNK],
+            reach: [0.0; CHUNK],
             density: [1.0; CHUNK],
             is_redirected: [false; CHUNK],
         }
@@ -49,9 +52,14 @@ impl<'k> Guidance<'k> {
         let mut is_any_guided = false;
         for (lane, (vertex, number)) in (0..CHUNK).zip(vertices) {
             let insight = knowledge.insight(number);
-            let share = vertex.guided_share();
-            let share = if insight.guides { share } else { 0.0 };
+            let (share, reach) = match vertex.guiding() {
+                Guiding::None => (0.0, 0.0),
+                Guiding::Mixed(reach) => (reach * insight.mixed_share.value(), reach),
+                Guiding::Alone => (1.0, 0.0),
+            };
+            let [share, reach] = [share, reach].map(|part| if insight.guides { part } else { 0.0 });
             self.share[lane] = share;
+            self.reach[lane] = reach;
             self.warps[lane] = &insight.warp;
             is_any_guided |= share > 0.0;
         }
@@ -92,6 +100,22 @@ impl<'k> Guidance<'k> {
             self.density[lane] = choose(density, 1.0);
             *choice = choose(*choice, rest);
         }
+    }
+
+    /// How likely the direction in a lane, which was drawn with the density `pdf`, would have been with other shares of guided directions; `None`
+    /// where they are not mixed with others.
+    #[inline(always)]
+    pub fn odds(&self, lane: usize, places: &SquarePlaces, pdf: f32) -> Option<Odds> {
+        let reach = self.reach[lane];
+        let is_mixed = reach > 0.0 && pdf > 0.0 && pdf < f32::INFINITY;
+        is_mixed.then(|| {
+            Odds::of(&MixedDirection {
+                pdf,
+                guided: guided_pdf(self.warps[lane], places.bins[lane], places.cosines[lane]),
+                share: self.share[lane],
+                reach,
+            })
+        })
     }
 
     /// Makes the directions that at most [`CHUNK`] `vertices` drew with the warped `numbers` those of the mixture.

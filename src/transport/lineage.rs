@@ -1,7 +1,7 @@
 //! Who descends from whom, and what each brought back: what a batch observes while the render learns.
 
 use super::batch::{CameraPaths, Segments};
-use crate::learning::{Bin, Observation, Observations, PixelObservation};
+use crate::learning::{Bin, Observation, Observations, Odds, PixelObservation};
 use crate::room::{make_room, resize};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -14,6 +14,8 @@ pub(super) struct Birth {
     pub address: u32,
     /// The direction that it took, if it is one of those that are learned.
     pub bin: Option<Bin>,
+    /// How likely that would have been with other shares of guided directions, where they are mixed with others.
+    pub odds: Option<Odds>,
     /// What light at the camera is multiplied by to be the radiance that came along the segment.
     pub per_radiance: f32,
     /// What it is multiplied by to be the value of an [`Observation`].
@@ -109,6 +111,7 @@ impl Lineage {
                 self.observed.segments.push(Observation {
                     address: birth.address,
                     bin: birth.bin,
+                    odds: birth.odds,
                     radiance: light * birth.per_radiance,
                     value: light * birth.per_value,
                     cost: rays,

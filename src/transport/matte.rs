@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::variant::{Arrivals, Scattering, Variant};
+use super::variant::{Arrivals, Guiding, Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::{Frame, Sampler, warp};
 use crate::scene::{BsdfSamples, BsdfValues, Diffuse, Refraction};
@@ -61,8 +61,8 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     }
 
     #[inline(always)]
-    fn guided_share(&self) -> f32 {
-        1.0
+    fn guiding(&self) -> Guiding {
+        Guiding::Alone
     }
 
     #[inline(always)]

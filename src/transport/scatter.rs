@@ -135,6 +135,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
                     parent: vertices.segment[parent],
                     address: vertices.address[parent],
                     bin: places.bin(lane),
+                    odds: guidance.odds(lane, &places, samples.pdf[lane]),
                     per_radiance: 1.0 / throughputs[lane].mean(),
                     per_value: expected / reflected.mean(),
                 }

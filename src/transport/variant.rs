@@ -146,6 +146,18 @@ impl<C: Colour> Arrival<'_, C> {
     }
 }
 
+/// What draws the directions of children where light was learned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Guiding {
+    /// The surface alone: its lobes are discrete.
+    None,
+    /// What was learned or the surface. The broader its lobes, the larger, in (0, 1], is the part of a [`GuidedShare`](crate::learning::GuidedShare)
+    /// that it makes use of.
+    Mixed(f32),
+    /// What was learned alone: the surface draws from the whole square as well.
+    Alone,
+}
+
 /// How a surface scatters light at one vertex. Directions are unit vectors in world space.
 pub(super) trait Scattering<S: SpectrumArithmetic>:
     Copy + Debug + Send + Sync + 'static
@@ -169,9 +181,8 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
     /// Whether next-event estimation can find light here: not where all lobes are discrete.
     fn has_smooth_lobe(&self) -> bool;
 
-    /// The probability with which what was learned draws the direction of a child, and not the surface: 1 where the surface
-    /// draws from the whole square as well, 0 where it is of no use.
-    fn guided_share(&self) -> f32;
+    /// Whether what was learned can draw the directions of children, and whether alone.
+    fn guiding(&self) -> Guiding;
 
     /// The frame in which directions are drawn, where `normal` is the shading normal of the side that was hit.
     fn frame(&self, normal: Vec3) -> Frame;
