@@ -13,6 +13,6 @@ cargo build --release
 for scene in scenes/gallery/*.xml; do
     name=$(basename "$scene" .xml)
     case $name in camera | stage | lamp) continue ;; esac # what the others include
-    "$cohort" render "$scene" --spp "$spp" -o "$work/$name.exr"
+    "$cohort" render "$scene" --strategy roulette --spp "$spp" -o "$work/$name.exr"
     mv "$work/$name.png" docs/images/gallery/
 done

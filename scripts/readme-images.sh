@@ -26,7 +26,7 @@ PYTHON
 }
 
 cargo build --release
-"$cohort" render --size 800x800 --time "${seconds}s" -o "$work/cornell-knot.exr"
+"$cohort" render --strategy roulette --size 800x800 --time "${seconds}s" -o "$work/cornell-knot.exr"
 halve cornell-knot
 for model in armadillo lucy; do
     for strategy in roulette go-with-the-winners particle-filter; do

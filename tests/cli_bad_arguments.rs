@@ -124,9 +124,12 @@ fn settings_that_do_not_fit_the_strategy() {
     assert!(said.contains("camera-path, pixel, tile"), "{said}");
     // The scene is not even looked at.
     let folder = Folder::new();
-    let arguments = ["render", "missing.xml", "--n-max", "4"];
+    let arguments = ["render", "missing.xml", "--threshold", "0.2"];
     let said = refused(&folder.cohort(arguments).output().unwrap());
-    assert!(said.contains("has no setting `n-max`"), "{said}");
+    assert!(
+        said.contains("the strategy `particle-filter` has no setting `threshold`"),
+        "{said}"
+    );
 }
 
 #[test]

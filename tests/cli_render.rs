@@ -40,7 +40,8 @@ fn the_variance_is_written_where_it_is_asked_for() {
     let folder = Folder::new();
     let out = folder.path().join("out.exr");
     let render = |spp, seed| {
-        let output = folder.render(SCENE, ["--spp", spp, "--seed", seed, "--variance"]);
+        let arguments = ["--strategy", "roulette", "--spp", spp, "--seed", seed];
+        let output = folder.render(SCENE, arguments.iter().chain(&["--variance"]).copied());
         assert!(output.status.success(), "{output:?}");
         let variance = cohort::film::read_exr_variance(&out).unwrap();
         (cohort::read_exr(&out).unwrap(), variance, output.stderr)
@@ -109,9 +110,10 @@ fn the_built_in_scene() {
     let metadata = metadata(&exr);
     for (name, value) in [
         ("scene", "built-in cornell-knot.xml"),
-        ("strategy", "roulette"),
-        ("strategy.threshold", "0.1"),
-        ("strategy.termination", "0.5"),
+        ("strategy", "particle-filter"),
+        ("strategy.rule", "learned"),
+        ("sampler", "array-qmc"),
+        ("guiding", "on"),
         ("colour", "spectral, 4 wavelengths a path"),
         ("film-sums", "double"),
         ("direct-light", "next-event"),
@@ -205,6 +207,29 @@ fn intersection_options_leave_the_image_as_it_is() {
         assert_eq!(metadata["build-quality"], quality);
         assert_eq!(metadata["robust"], "true");
         assert_eq!(image, plain);
+    }
+}
+
+/// What does best together is the default; a strategy that is named comes alone.
+#[test]
+fn a_named_strategy_has_no_sampler_and_no_guiding_by_default() {
+    for (arguments, sampler, guiding) in [
+        (&["--rgb"][..], "array-qmc", "on"),
+        (&["--guiding", "off"], "array-qmc", "off"),
+        (&["--sampler", "sobol"], "sobol", "on"),
+        (&["--strategy", "particle-filter"], "independent", "off"),
+        (
+            &["--strategy", "ears", "--guiding", "on"],
+            "independent",
+            "on",
+        ),
+    ] {
+        let folder = Folder::new();
+        let output = folder.render(SCENE, arguments.iter().copied());
+        assert!(output.status.success(), "{output:?}");
+        let metadata = metadata(&folder.path().join("out.exr"));
+        assert_eq!(metadata["sampler"], sampler, "{arguments:?}");
+        assert_eq!(metadata["guiding"], guiding, "{arguments:?}");
     }
 }
 

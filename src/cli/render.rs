@@ -64,13 +64,14 @@ pub struct RenderArgs {
     #[arg(long, value_name = "PRECISION", value_enum, default_value_t = Sums::Double)]
     sums: Sums,
 
-    /// Where the random numbers of paths come from: independent, sobol or array-qmc
-    #[arg(long, value_name = "NAME", default_value_t = SamplerKind::default())]
-    sampler: SamplerKind,
+    /// Where the random numbers of paths come from: independent, sobol or array-qmc [default: independent, or array-qmc where
+    /// no strategy is named]
+    #[arg(long, value_name = "NAME")]
+    sampler: Option<SamplerKind>,
 
-    /// Whether directions are guided by where light was found to come from
-    #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
-    guiding: Switch,
+    /// Whether directions are guided by where light was found to come from [default: off, or on where no strategy is named]
+    #[arg(long, value_name = "SWITCH", value_enum)]
+    guiding: Option<Switch>,
 
     /// Whether what was learned is tried against doing without, and left aside where it does not pay
     #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
@@ -203,6 +204,12 @@ impl RenderArgs {
     }
 
     fn settings(&self, scene: &Scene) -> Result<Settings, Box<dyn Error>> {
+        // A strategy that is named comes alone, as in comparisons; otherwise it is what does best together.
+        let (sampler, guiding) = if self.strategy.is_named() {
+            (SamplerKind::Independent, Switch::Off)
+        } else {
+            (SamplerKind::ArrayQmc, Switch::On)
+        };
         let of_scene = NonZeroU32::new(scene.sampler.sample_count).unwrap_or(NonZeroU32::MIN);
         Ok(Settings {
             strategy: self.strategy.build(scene.integrator.roulette_depth)?,
@@ -227,8 +234,8 @@ impl RenderArgs {
                 Sums::Double => FilmSums::Double,
                 Sums::Compensated => FilmSums::Compensated,
             },
-            sampler: self.sampler,
-            guiding: self.guiding.is_on(),
+            sampler: self.sampler.unwrap_or(sampler),
+            guiding: self.guiding.unwrap_or(guiding).is_on(),
             trial: self.trial.is_on(),
             direct_light: match self.direct {
                 Direct::NextEvent => DirectLight::NextEvent,

@@ -10,9 +10,9 @@ use cohort::walk::{
 #[command(next_help_heading = "Strategy")]
 pub struct StrategyArgs {
     /// Who decides how long paths are followed: fixed-depth, roulette, throughput-roulette, go-with-the-winners,
-    /// adjoint-roulette, ears, particle-filter or paper-particle-filter
-    #[arg(long, value_name = "NAME", default_value_t = StrategyKind::Roulette)]
-    strategy: StrategyKind,
+    /// adjoint-roulette, ears, particle-filter or paper-particle-filter [default: particle-filter, with array-qmc and guiding]
+    #[arg(long, value_name = "NAME")]
+    strategy: Option<StrategyKind>,
 
     /// roulette: importance below which a path may end (the paper's T) [default: 0.1]
     #[arg(long, value_name = "T")]
@@ -50,16 +50,22 @@ pub struct StrategyArgs {
 }
 
 impl StrategyArgs {
+    /// Whether a strategy is asked for by its name.
+    pub fn is_named(&self) -> bool {
+        self.strategy.is_some()
+    }
+
     /// The strategy; `roulette_depth` is the scene's own choice for `throughput-roulette`.
     ///
     /// # Errors
     /// Settings that the strategy does not have, and values out of their range.
     pub fn build(&self, roulette_depth: u32) -> Result<Box<dyn Strategy>, SettingError> {
-        let of_scene = match self.strategy {
+        let strategy = self.strategy.unwrap_or(StrategyKind::ParticleFilter);
+        let of_scene = match strategy {
             StrategyKind::ThroughputRoulette => Some(roulette_depth),
             _ => None,
         };
-        self.strategy.build(&StrategyOptions {
+        strategy.build(&StrategyOptions {
             threshold: self.threshold,
             termination: self.termination,
             from_depth: self.from_depth.or(of_scene),
