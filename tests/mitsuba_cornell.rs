@@ -299,14 +299,6 @@ fn armadillo_in_wavelengths() {
     }
 }
 
-#[test]
-#[ignore = "takes minutes, and says little that armadillo_in_wavelengths does not say"]
-fn armadillo_in_wavelengths_by_every_strategy() {
-    if let Some(model) = Model::armadillo() {
-        compare_means(&model, ColourMode::default(), &every_strategy());
-    }
-}
-
 /// Compares the knot at half the size by each of `walks`, in blocks only.
 fn compare_walks(job: &Job, walks: &[(String, Walk)]) {
     let Some(mitsuba) = Mitsuba::find("ways to walk in cornell-knot.xml") else {

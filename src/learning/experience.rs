@@ -225,7 +225,7 @@ impl Experience {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::learning::Bin;
+    use crate::learning::{Bin, GuidedShare, MixedDirection, Odds};
     use glam::Vec3;
 
     fn tree() -> CellTree {
@@ -322,6 +322,33 @@ mod tests {
         let dark = insights[1].warp.density(Bin::of([2.5 / 8.0, 3.5 / 8.0]));
         assert!(bright > 30.0 && dark < 0.5, "{bright} {dark}");
         assert!(insights[1].guides);
+    }
+
+    /// Directions that lobes alone would rarely have drawn bring back the light.
+    #[test]
+    fn surfaces_with_lobes_are_guided_as_much_as_varies_least() {
+        let share_by = |guided: f32| {
+            let mut tree = tree();
+            let direction = MixedDirection {
+                pdf: 1.0,
+                guided,
+                share: 0.5,
+                reach: 1.0,
+            };
+            let observation = Observation {
+                odds: Some(Odds::of(&direction)),
+                ..observation(address(&tree, 0.1), 1.0)
+            };
+            let mut experience = observed([observation; 100]);
+            experience.refine(&mut tree);
+            experience.insights(&tree).1[1].mixed_share.value()
+        };
+        assert_eq!(share_by(1.9), 0.75);
+        assert_eq!(share_by(0.1), 0.0);
+        let mut experience = observed([observation(address(&tree(), 0.1), 1.0)]);
+        experience.refine(&mut tree());
+        let (_, insights) = experience.insights(&tree());
+        assert_eq!(insights[1].mixed_share, GuidedShare::UNKNOWN);
     }
 
     /// What is the same from everywhere, or noise from everywhere.

@@ -2,8 +2,8 @@
 //!
 //! Directions come from what was learned with probability s, otherwise from the lobes: their density is q_s = s g + (1 - s) p. Which s is good depends on
 //! whether it is the light or the lobe that is narrow. A direction that was drawn with density q and brought back w = f L / q tells of every share s what
-//! the second moment would be, the integral of (f L)^2 / q_s: it is the mean of w^2 q / q_s. (Selection probabilities are learned from such means by
-//! gradient descent in Vorba et al. 2019, "Path Guiding in Production", chapter 10; here there are few to choose from.)
+//! the second moment would be, the integral of (f L)^2 / q_s: it is the mean of w^2 q / q_s. (Müller 2019, chapter 10 of the course
+//! "Path Guiding in Production", learns the probability by gradient descent; here there are few to choose from.)
 
 use serde::{Deserialize, Serialize};
 

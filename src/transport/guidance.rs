@@ -226,3 +226,30 @@ fn mixed_pdf(share: f32, guided: f32, pdf: f32) -> f32 {
         share * guided + (1.0 - share) * pdf
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With the share that it was drawn with, a direction is as likely as it was; where nothing is mixed there is no other share.
+    #[test]
+    fn odds_are_those_of_mixed_directions() {
+        let mut guidance = Guidance::new();
+        let mut places = SquarePlaces::default();
+        places.cosines[3] = 0.5;
+        let guided = 0.5 * FRAC_1_PI;
+        assert_eq!(guidance.odds(3, &places, 0.2), None);
+        guidance.reach[3] = 0.8;
+        guidance.share[3] = 0.8 * 0.25;
+        let own = 2.0;
+        let pdf = mixed_pdf(guidance.share[3], guided, own);
+        let direction = MixedDirection {
+            pdf,
+            guided,
+            share: 0.2,
+            reach: 0.8,
+        };
+        assert_eq!(guidance.odds(3, &places, pdf), Some(Odds::of(&direction)));
+        assert_eq!(guidance.odds(3, &places, f32::INFINITY), None);
+    }
+}
