@@ -6,6 +6,7 @@
 mod bounds;
 mod cone;
 mod emitters;
+mod importance;
 mod tree;
 
 pub use bounds::LightBounds;
@@ -106,7 +107,7 @@ impl LightChoice {
 
     /// Chooses an emitter for a surface at `position` (world space) with this unit `normal`, of either side, from the
     /// uniform number `u` in [0, 1). `None` where no light can arrive.
-    #[inline]
+    #[inline(always)]
     pub fn choose(&self, position: Vec3, normal: Vec3, u: f32) -> Option<ChosenLight> {
         match &self.0 {
             Kind::None => None,

@@ -1,45 +1,54 @@
-//! A binary tree of lights: the way down goes to either side in proportion to its importance.
+//! A tree of lights: the way down goes to each side in proportion to its importance.
 //!
-//! Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting" (without the splitting).
+//! Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting" (without the splitting). Their tree is binary; here every node takes
+//! the place of several of theirs and has up to [`WIDTH`] children, which are looked at together, as lanes.
 
 use glam::Vec3;
 
 use super::ChosenLight;
-use super::bounds::{LightBounds, LightSphere};
+use super::bounds::LightBounds;
+use super::importance::LightLanes;
+
+/// The most children of a node.
+const WIDTH: usize = 8;
 
 /// The tree of the lights that have a place.
 #[derive(Clone, Debug)]
 pub struct LightTree {
-    /// The first is the root; the first child of an inner node is the next node.
+    /// The first is the root.
     nodes: Vec<Node>,
-    /// The way from the root to every emitter.
-    ways: Vec<Option<Way>>,
+    /// The way from the root to every emitter: which child to go to from each node.
+    ways: Vec<Option<Vec<u8>>>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Node {
-    lights: LightSphere,
-    kind: Kind,
+    lights: LightLanes<WIDTH>,
+    children: [Child; WIDTH],
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Kind {
-    Inner { second_child: u32 },
-    Leaf { emitter: u32 },
+enum Child {
+    /// The lane is empty.
+    None,
+    Node(u32),
+    Emitter(u32),
 }
 
-/// Which child every node on the way to a leaf has, from the lowest bit on: 1 for the second.
-#[derive(Clone, Copy, Debug, Default)]
-struct Way {
-    turns: u64,
-    length: u32,
+/// A binary tree of lights.
+enum Branch {
+    Leaf(PlacedLight),
+    Inner(LightBounds, Box<[Branch; 2]>),
 }
 
-/// Below this depth nodes are split in the middle of their list, so that no way is longer than 64.
+/// Below this depth binary branches are split in the middle of their list, so that no way is long.
 const BALANCED_DEPTH: u32 = 24;
 
 /// A child whose light can arrive gets at least this probability: importances are guesses.
 const LEAST_SHARE: f32 = 1e-3;
+
+/// The greatest number below 1.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// Groups that a split by cost chooses among, along each axis.
 const BUCKETS: usize = 12;
@@ -53,6 +62,56 @@ pub struct PlacedLight {
     pub bounds: LightBounds,
 }
 
+impl Branch {
+    /// The binary tree of `lights`, which are not empty, at this `depth`.
+    fn grow(lights: &mut [PlacedLight], depth: u32) -> Self {
+        if let [light] = lights {
+            return Self::Leaf(*light);
+        }
+        let middle = split(lights, depth);
+        let (first, second) = lights.split_at_mut(middle);
+        let children = [Self::grow(first, depth + 1), Self::grow(second, depth + 1)];
+        let [first, second] = &children;
+        let bounds = first.bounds().union(second.bounds());
+        Self::Inner(bounds, Box::new(children))
+    }
+
+    fn bounds(&self) -> &LightBounds {
+        match self {
+            Self::Leaf(light) => &light.bounds,
+            Self::Inner(bounds, _) => bounds,
+        }
+    }
+
+    /// What would be gained by looking at its children instead; nothing where it has none.
+    fn cost(&self) -> Option<f32> {
+        match self {
+            Self::Leaf(_) => None,
+            Self::Inner(bounds, _) => Some(bounds.cost()),
+        }
+    }
+
+    /// At most [`WIDTH`] branches that are this one together: those that cost most have been opened.
+    fn open(self) -> Vec<Self> {
+        let mut branches = vec![self];
+        while branches.len() < WIDTH {
+            let costs = branches
+                .iter()
+                .enumerate()
+                .filter_map(|(index, branch)| Some((index, branch.cost()?)));
+            let Some((index, _)) = costs.max_by(|(_, one), (_, other)| one.total_cmp(other)) else {
+                break;
+            };
+            if let Self::Inner(_, children) = branches.remove(index) {
+                let [first, second] = *children;
+                branches.insert(index, second);
+                branches.insert(index, first);
+            }
+        }
+        branches
+    }
+}
+
 impl LightTree {
     /// The tree of `lights`; `None` if there are none.
     pub fn new(mut lights: Vec<PlacedLight>) -> Option<Self> {
@@ -61,70 +120,61 @@ impl LightTree {
             .map(|light| light.emitter as usize + 1)
             .max()?;
         let mut tree = Self {
-            nodes: Vec::with_capacity(2 * lights.len()),
+            nodes: Vec::new(),
             ways: vec![None; emitters],
         };
-        tree.grow(&mut lights, Way::default());
+        tree.add(Branch::grow(&mut lights, 0), &mut Vec::new());
         Some(tree)
     }
 
-    /// Adds the subtree of `lights`, which are not empty, at the end of `way`.
-    fn grow(&mut self, lights: &mut [PlacedLight], way: Way) -> LightBounds {
+    /// Adds the nodes of a branch at the end of `way`; returns the number of the first of them.
+    fn add(&mut self, branch: Branch, way: &mut Vec<u8>) -> u32 {
         let own = self.nodes.len();
-        if let [light] = lights {
-            self.nodes.push(Node {
-                lights: LightSphere::from(&light.bounds),
-                kind: Kind::Leaf {
-                    emitter: light.emitter,
-                },
-            });
-            self.ways[light.emitter as usize] = Some(way);
-            return light.bounds;
-        }
-        let middle = split(lights, way.length);
-        let (first, second) = lights.split_at_mut(middle);
         self.nodes.push(Node {
-            lights: LightSphere::from(&first[0].bounds),
-            kind: Kind::Inner { second_child: 0 },
+            lights: LightLanes::none(),
+            children: [Child::None; WIDTH],
         });
-        let first = self.grow(first, way.turning(false));
-        let second_child = self.nodes.len() as u32;
-        let second = self.grow(second, way.turning(true));
-        let bounds = first.union(&second);
-        self.nodes[own] = Node {
-            lights: LightSphere::from(&bounds),
-            kind: Kind::Inner { second_child },
-        };
-        bounds
+        for (lane, branch) in branch.open().into_iter().enumerate() {
+            self.nodes[own].lights.put(lane, branch.bounds());
+            way.push(lane as u8);
+            self.nodes[own].children[lane] = match branch {
+                Branch::Leaf(light) => {
+                    self.ways[light.emitter as usize] = Some(way.clone());
+                    Child::Emitter(light.emitter)
+                }
+                Branch::Inner(..) => Child::Node(self.add(branch, way)),
+            };
+            way.pop();
+        }
+        own as u32
     }
 
     /// Chooses a light for a surface from `u` in [0, 1). `None` where no light can arrive.
-    #[inline]
+    #[inline(always)]
     pub fn choose(&self, position: Vec3, normal: Vec3, mut u: f32) -> Option<ChosenLight> {
-        let (mut node, mut probability) = (0, 1.0);
+        let (mut node, mut probability) = (&self.nodes[0], 1.0);
         loop {
-            match self.nodes[node].kind {
-                Kind::Leaf { emitter } => {
+            let shares = node.shares(position, normal)?;
+            let (mut lane, mut before, mut end) = (0, 0.0, 0.0);
+            for (child, &share) in shares.iter().enumerate() {
+                // Of what rounding leaves beyond all shares, the last that has one gets the rest.
+                let is_next = (share > 0.0) & (u >= end);
+                lane = if is_next { child } else { lane };
+                before = if is_next { end } else { before };
+                end += share;
+            }
+            probability *= shares[lane];
+            u = ((u - before) / shares[lane]).min(BELOW_ONE);
+            match node.children[lane] {
+                Child::Node(next) => node = &self.nodes[next as usize],
+                Child::Emitter(emitter) => {
                     return Some(ChosenLight {
                         emitter: emitter as usize,
                         probability,
                         remainder: u,
                     });
                 }
-                Kind::Inner { second_child } => {
-                    let second_child = second_child as usize;
-                    let first = self.share_of_first(node, second_child, position, normal)?;
-                    if u < first {
-                        u /= first;
-                        probability *= first;
-                        node += 1;
-                    } else {
-                        u = (u - first) / (1.0 - first);
-                        probability *= 1.0 - first;
-                        node = second_child;
-                    }
-                    u = u.min(1.0 - f32::EPSILON / 2.0);
-                }
+                Child::None => return None,
             }
         }
     }
@@ -132,53 +182,40 @@ impl LightTree {
     /// The probability with which [`Self::choose`] chooses an emitter.
     #[inline]
     pub fn probability(&self, position: Vec3, normal: Vec3, emitter: usize) -> f32 {
-        let Some(&Some(Way { mut turns, .. })) = self.ways.get(emitter) else {
+        let Some(Some(way)) = self.ways.get(emitter) else {
             return 0.0;
         };
-        let (mut node, mut probability) = (0, 1.0);
-        while let Kind::Inner { second_child } = self.nodes[node].kind {
-            let second_child = second_child as usize;
-            let Some(first) = self.share_of_first(node, second_child, position, normal) else {
+        let (mut node, mut probability) = (&self.nodes[0], 1.0);
+        for &lane in way {
+            let Some(shares) = node.shares(position, normal) else {
                 return 0.0;
             };
-            if turns & 1 == 0 {
-                probability *= first;
-                node += 1;
-            } else {
-                probability *= 1.0 - first;
-                node = second_child;
+            probability *= shares[usize::from(lane)];
+            if let Child::Node(next) = node.children[usize::from(lane)] {
+                node = &self.nodes[next as usize];
             }
-            turns >>= 1;
         }
         probability
     }
-
-    /// The probability of the first child of a node; `None` where none of its lights can arrive.
-    #[inline]
-    fn share_of_first(
-        &self,
-        node: usize,
-        second_child: usize,
-        position: Vec3,
-        normal: Vec3,
-    ) -> Option<f32> {
-        let first = self.nodes[node + 1].lights.importance(position, normal);
-        let second = self.nodes[second_child].lights.importance(position, normal);
-        match (first > 0.0, second > 0.0) {
-            (true, true) => Some((first / (first + second)).clamp(LEAST_SHARE, 1.0 - LEAST_SHARE)),
-            (true, false) => Some(1.0),
-            (false, true) => Some(0.0),
-            (false, false) => None,
-        }
-    }
 }
 
-impl Way {
-    fn turning(self, to_second: bool) -> Self {
-        Self {
-            turns: self.turns | u64::from(to_second) << self.length,
-            length: self.length + 1,
+impl Node {
+    /// The probabilities of the children; `None` where none of their lights can arrive.
+    #[inline(always)]
+    fn shares(&self, position: Vec3, normal: Vec3) -> Option<[f32; WIDTH]> {
+        let mut shares = self.lights.importances(position, normal);
+        // Of numbers up to 10^30 eight are no infinite sum.
+        let sum: f32 = shares.iter().sum();
+        let possible: f32 = shares
+            .iter()
+            .map(|&share| f32::from(u8::from(share > 0.0)))
+            .sum();
+        let per_importance = (1.0 - possible * LEAST_SHARE) / sum;
+        for share in &mut shares {
+            let mixed = *share * per_importance + LEAST_SHARE;
+            *share = if *share > 0.0 { mixed } else { 0.0 };
         }
+        (sum > 0.0).then_some(shares)
     }
 }
 
