@@ -21,7 +21,7 @@ pub struct Insight {
     pub mean: f32,
     /// The mean of its square; 0 where nothing was observed.
     pub square: f32,
-    /// How many rays such a path takes.
+    /// What such a path costs, where a bounce costs 1.
     pub cost: f32,
     /// Whether directions gain by being drawn from where it comes.
     pub guides: bool,

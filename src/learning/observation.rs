@@ -18,7 +18,7 @@ pub struct Observation {
     pub radiance: f32,
     /// What it was worth: an estimate of the light that the vertex reflects, with albedo 1.
     pub value: f32,
-    /// How many rays were traced for it, all descendants included.
+    /// What it cost with all its descendants, where a bounce costs 1.
     pub cost: f32,
 }
 
@@ -35,8 +35,8 @@ pub struct PixelObservation {
     pub noisy: f32,
     /// The sum of the squares of that part.
     pub square: f32,
-    /// The sum of their rays.
-    pub rays: f32,
+    /// The sum of what they cost, where a bounce costs 1.
+    pub cost: f32,
 }
 
 impl PixelObservation {
@@ -60,7 +60,7 @@ impl PixelObservation {
         self.radiance += other.radiance;
         self.noisy += other.noisy;
         self.square += other.square;
-        self.rays += other.rays;
+        self.cost += other.cost;
     }
 }
 
@@ -77,7 +77,7 @@ mod tests {
             radiance: 22.0,
             noisy: 2.0,
             square: 2.0,
-            rays: 8.0,
+            cost: 8.0,
         };
         assert!((pixel.variance(5.5) - 1.0 / 3.0).abs() < 1e-9);
         let single = PixelObservation { paths: 1, ..pixel };
@@ -94,10 +94,10 @@ mod tests {
                 radiance: 1.0,
                 noisy: 1.0,
                 square,
-                rays: 5.0,
+                cost: 5.0,
             });
         }
-        assert_eq!((pixel.paths, pixel.square, pixel.rays), (2, 5.0, 10.0));
+        assert_eq!((pixel.paths, pixel.square, pixel.cost), (2, 5.0, 10.0));
         assert_eq!((pixel.radiance, pixel.noisy), (2.0, 2.0));
     }
 }

@@ -63,10 +63,10 @@ impl PixelKnowledge {
             let brightness = f64::from(brightness);
             if pixel.paths > 0 && brightness > 0.0 {
                 let variance = f64::from(pixel.paths) * pixel.variance(brightness);
-                let rays = f64::from(pixel.rays);
-                absolute.push(Price { variance, rays });
+                let cost = f64::from(pixel.cost);
+                absolute.push(Price { variance, cost });
                 let variance = variance / (brightness * brightness);
-                relative.push(Price { variance, rays });
+                relative.push(Price { variance, cost });
             }
         }
         Self {
@@ -82,25 +82,25 @@ impl PixelKnowledge {
         self.brightness.get(pixel as usize).copied().unwrap_or(0.0)
     }
 
-    /// The square root of the mean cost of a path, in rays, over the mean of its variance relative to the brightness of its pixel.
+    /// The square root of the mean cost of a path, in bounces, over the mean of its variance relative to the brightness of its pixel.
     pub fn relative_factor(&self) -> f32 {
         self.relative_factor
     }
 
-    /// The square root of the mean cost of a path, in rays, over the mean of its variance.
+    /// The square root of the mean cost of a path, in bounces, over the mean of its variance.
     pub fn absolute_factor(&self) -> f32 {
         self.absolute_factor
     }
 }
 
-/// What the paths of a pixel leave in variance, and what they take in rays.
+/// What the paths of a pixel leave in variance, and what they cost in bounces.
 #[derive(Clone, Copy, Debug)]
 struct Price {
     variance: f64,
-    rays: f64,
+    cost: f64,
 }
 
-/// The square root of all rays over all variance, without those of the pixels that vary most; 1 where nothing varies.
+/// The square root of all cost over all variance, without those of the pixels that vary most; 1 where nothing varies.
 fn factor(prices: &mut [Price]) -> f32 {
     let outliers = OUTLIERS.min(prices.len() / FEWEST_PER_OUTLIER);
     let kept = prices.len() - outliers;
@@ -109,9 +109,9 @@ fn factor(prices: &mut [Price]) -> f32 {
     }
     let kept = &prices[..kept];
     let sum = |number: fn(&Price) -> f64| kept.iter().map(number).sum::<f64>();
-    let [variance, rays] = [sum(|price| price.variance), sum(|price| price.rays)];
+    let [variance, cost] = [sum(|price| price.variance), sum(|price| price.cost)];
     if variance > 0.0 {
-        (rays / variance).sqrt() as f32
+        (cost / variance).sqrt() as f32
     } else {
         1.0
     }
@@ -164,7 +164,7 @@ mod tests {
                 radiance,
                 noisy: radiance,
                 square: radiance * radiance,
-                rays: 10.0,
+                cost: 10.0,
             }
         };
         (0..SIZE.width * SIZE.height).map(pixel).collect()
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn the_factor_is_that_of_cost_and_relative_variance() {
-        // Of two paths one brings 2 and the other nothing: mean 1, variance 2, for five rays each.
+        // Of two paths one brings 2 and the other nothing: mean 1, variance 2, at a cost of five each.
         let knowledge = PixelKnowledge::new(&observed(|_, _| 2.0), SIZE);
         assert!((knowledge.relative_factor() - 2.5_f32.sqrt()).abs() < 1e-5);
         let brighter = PixelKnowledge::new(&observed(|_, _| 2000.0), SIZE);
@@ -214,7 +214,7 @@ mod tests {
         let prices = |fireflies: usize| {
             let price = |i| Price {
                 variance: if i < fireflies { 1e9 } else { 4.0 },
-                rays: 9.0,
+                cost: 9.0,
             };
             (0..1000).map(price).collect::<Vec<_>>()
         };

@@ -5,6 +5,12 @@ use crate::learning::{Bin, Observation, Observations, Odds, PixelObservation};
 use crate::room::{make_room, resize};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
+/// What a camera ray costs with what is done where it ends, where a bounce costs 1. It has neighbours that go its way, and nothing has to be scattered for it.
+const CAMERA_RAY_COST: f32 = 0.4;
+
+/// What a shadow ray costs: it ends at the first thing that it meets, and nothing is done there.
+const SHADOW_RAY_COST: f32 = 0.4;
+
 /// How a segment left its vertex.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Birth {
@@ -28,8 +34,8 @@ pub(super) struct Generation {
     births: Vec<Birth>,
     /// The mean over wavelengths of what each brought to the camera.
     light: Vec<f32>,
-    /// Rays that were traced for each: itself, and shadow rays from its end.
-    rays: Vec<f32>,
+    /// What each costs: itself, and shadow rays from its end.
+    cost: Vec<f32>,
 }
 
 impl Generation {
@@ -42,7 +48,7 @@ impl Generation {
     /// A shadow ray was traced from the end of segment number `segment`.
     #[inline(always)]
     pub fn count_shadow_ray(&mut self, segment: usize) {
-        self.rays[segment] += 1.0;
+        self.cost[segment] += SHADOW_RAY_COST;
     }
 }
 
@@ -75,8 +81,13 @@ impl Lineage {
         generation.births.clone_from(&segments.births);
         make_room(&mut generation.light, segments.len());
         generation.light.resize(segments.len(), 0.0);
-        make_room(&mut generation.rays, segments.len());
-        generation.rays.resize(segments.len(), 1.0);
+        let cost = if self.depth == 1 {
+            CAMERA_RAY_COST
+        } else {
+            1.0
+        };
+        make_room(&mut generation.cost, segments.len());
+        generation.cost.resize(segments.len(), cost);
     }
 
     /// The generation that began last.
@@ -106,18 +117,18 @@ impl Lineage {
                 .births
                 .iter()
                 .zip(&youngest.light)
-                .zip(&youngest.rays);
-            for ((birth, &light), &rays) in brought {
+                .zip(&youngest.cost);
+            for ((birth, &light), &cost) in brought {
                 self.observed.segments.push(Observation {
                     address: birth.address,
                     bin: birth.bin,
                     odds: birth.odds,
                     radiance: light * birth.per_radiance,
                     value: light * birth.per_value,
-                    cost: rays,
+                    cost,
                 });
                 elders.light[birth.parent as usize] += light;
-                elders.rays[birth.parent as usize] += rays;
+                elders.cost[birth.parent as usize] += cost;
             }
         }
         let pixels = &mut self.observed.pixels;
@@ -128,16 +139,16 @@ impl Lineage {
         }));
         let pixels = &mut pixels[first_of_batch..];
         if let Some(first) = self.generations[..self.depth].first() {
-            let brought = first.births.iter().zip(&first.light).zip(&first.rays);
+            let brought = first.births.iter().zip(&first.light).zip(&first.cost);
             let seen = self.seen.iter().copied().chain(std::iter::repeat(0.0));
-            for (((birth, &light), &rays), seen) in brought.zip(seen) {
+            for (((birth, &light), &cost), seen) in brought.zip(seen) {
                 let pixel = &mut pixels[(birth.parent / paths.samples) as usize];
                 pixel.paths += 1;
                 pixel.radiance += light;
                 let noisy = light - seen;
                 pixel.noisy += noisy;
                 pixel.square += noisy * noisy;
-                pixel.rays += rays;
+                pixel.cost += cost;
             }
         }
     }
@@ -192,6 +203,6 @@ mod tests {
             (aside.radiance, aside.noisy, aside.square),
             (11.0, 1.0, 1.0)
         );
-        assert_eq!((aside.paths, aside.rays), (2, 2.0));
+        assert_eq!((aside.paths, aside.cost), (2, 2.0 * CAMERA_RAY_COST));
     }
 }

@@ -10,7 +10,7 @@
 //!        1      otherwise
 //! ```
 //!
-//! v is what a child brings back, c the rays that it takes, I the brightness of the pixel. Ending a path is decided by the second moment,
+//! v is what a child brings back, c what it costs, I the brightness of the pixel. Ending a path is decided by the second moment,
 //! for it risks everything; splitting it by the variance, for copies share their mean: between them lies a range in which a path goes on alone. The ten
 //! pixels that vary most do not count for the image's cost and variance, as in the authors' implementation.
 //!

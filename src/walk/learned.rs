@@ -20,7 +20,7 @@ pub struct Learned<'a> {
     pub mean: &'a [f32],
     /// The mean of its square; 0 where nothing is known.
     pub square: &'a [f32],
-    /// The rays that a child takes, those of its descendants included.
+    /// What a child costs with all its descendants, where a bounce costs 1.
     pub cost: &'a [f32],
     /// Throughput times albedo, as a mean over wavelengths: what multiplies the value.
     pub reflected: &'a [f32],

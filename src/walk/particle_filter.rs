@@ -9,7 +9,7 @@
 //! nu_k = W_k a_k / I sqrt((E[v^2] - s E[v]^2) / c) sqrt(image cost / image relative variance)
 //! ```
 //!
-//! v is what a child brings back, c the rays that it takes, I the brightness of the pixel, and s the part of what neighbours have in common that they hold in
+//! v is what a child brings back, c what it costs, I the brightness of the pixel, and s the part of what neighbours have in common that they hold in
 //! balance by rounding jointly: 1/2 where the sampler sorts populations, else 0. A dead zone leaves particles alone from 2/3 to 3/2, and draws
 //! other counts to 1 by the same factor. No count above 1 is more than Var\[v\] would make it, for copies of what does not vary are
 //! worth nothing; nu is kept from 0.02 to 20, at mirrors and glass it is at most 1, and all particles together get at most four children for each camera path. Before anything is learned,
