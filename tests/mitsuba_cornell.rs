@@ -194,9 +194,9 @@ fn every_strategy() -> [Walk; StrategyKind::ALL.len()] {
         },
         StrategyKind::Roulette
         | StrategyKind::ThroughputRoulette
-        | StrategyKind::AdjointRoulette
-        | StrategyKind::Ears => Walk::new(kind, 10),
-        // It ends paths from the first vertex on: cheap paths, and more of them.
+        | StrategyKind::AdjointRoulette => Walk::new(kind, 10),
+        // They end paths from the first vertex on: cheap paths, and more of them.
+        StrategyKind::Ears => Walk::new(kind, 14),
         StrategyKind::ParticleFilter => Walk::new(kind, 20),
         StrategyKind::GoWithTheWinners | StrategyKind::PaperParticleFilter => Walk::new(kind, 9),
     })
