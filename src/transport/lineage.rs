@@ -195,6 +195,28 @@ mod tests {
     }
 
     #[test]
+    fn bounces_cost_more_than_other_rays() {
+        let mut paths = CameraPaths::<Rgb>::new();
+        paths.restart(0..1, 1);
+        let mut segments = Segments::<Rgb>::new();
+        segments.restart(1);
+        first_births(&mut segments.births, 1);
+        segments.path.push(0);
+        let mut lineage = Lineage::default();
+        lineage.restart();
+        for _ in 0..2 {
+            lineage.begin(&segments);
+            let youngest = lineage.youngest().expect("a generation has begun");
+            youngest.count_shadow_ray(0);
+        }
+        lineage.conclude(&paths);
+        let bounce = 1.0 + SHADOW_RAY_COST;
+        assert_eq!(lineage.observed.segments[0].cost, bounce);
+        let camera_path = CAMERA_RAY_COST + SHADOW_RAY_COST + bounce;
+        assert_eq!(lineage.observed.pixels[0].cost, camera_path);
+    }
+
+    #[test]
     fn what_is_seen_is_bright_but_no_noise_if_it_is_set_aside() {
         let all = observed(false);
         assert_eq!((all.radiance, all.noisy, all.square), (11.0, 11.0, 101.0));
