@@ -4,6 +4,7 @@
 //! each with the same probability as the whole tree. Wherever light can arrive, it has a positive probability.
 
 mod bounds;
+mod branch;
 mod cone;
 mod emitters;
 mod importance;
@@ -16,8 +17,9 @@ use glam::Vec3;
 
 use super::Shape;
 use super::emitters::Emitter;
+use branch::PlacedLight;
 use emitters::Place;
-use tree::{LightTree, PlacedLight};
+use tree::LightTree;
 
 /// A way to choose one of a scene's emitters.
 #[derive(Clone, Debug)]
@@ -124,7 +126,7 @@ impl LightChoice {
                 let choices = distant.len() + usize::from(tree.is_some());
                 let scaled = u * choices as f32;
                 let index = (scaled as usize).min(choices - 1);
-                let remainder = (scaled - index as f32).min(1.0 - f32::EPSILON / 2.0);
+                let remainder = (scaled - index as f32).min(BELOW_ONE);
                 match (distant.get(index), tree) {
                     (Some(&emitter), _) => Some(ChosenLight {
                         emitter,
@@ -166,6 +168,9 @@ impl LightChoice {
         }
     }
 }
+
+/// The greatest number below 1.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// The least power of a light, as a share of the greatest.
 const LEAST_POWER: f32 = 1e-6;

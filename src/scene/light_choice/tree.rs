@@ -5,9 +5,9 @@
 
 use glam::Vec3;
 
-use super::ChosenLight;
-use super::bounds::LightBounds;
+use super::branch::{Branch, PlacedLight};
 use super::importance::LightLanes;
+use super::{BELOW_ONE, ChosenLight};
 
 /// The most children of a node.
 const WIDTH: usize = 8;
@@ -29,88 +29,14 @@ struct Node {
 
 #[derive(Clone, Copy, Debug)]
 enum Child {
-    /// The lane is empty.
+    /// The lane is empty: it has no power, and is never chosen.
     None,
     Node(u32),
     Emitter(u32),
 }
 
-/// A binary tree of lights.
-enum Branch {
-    Leaf(PlacedLight),
-    Inner(LightBounds, Box<[Branch; 2]>),
-}
-
-/// Below this depth binary branches are split in the middle of their list, so that no way is long.
-const BALANCED_DEPTH: u32 = 24;
-
 /// A child whose light can arrive gets at least this probability: importances are guesses.
 const LEAST_SHARE: f32 = 1e-3;
-
-/// The greatest number below 1.
-const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
-
-/// Groups that a split by cost chooses among, along each axis.
-const BUCKETS: usize = 12;
-
-/// A light on its way into the tree.
-#[derive(Clone, Copy, Debug)]
-pub struct PlacedLight {
-    /// Its number among the scene's emitters.
-    pub emitter: u32,
-    /// Where it shines.
-    pub bounds: LightBounds,
-}
-
-impl Branch {
-    /// The binary tree of `lights`, which are not empty, at this `depth`.
-    fn grow(lights: &mut [PlacedLight], depth: u32) -> Self {
-        if let [light] = lights {
-            return Self::Leaf(*light);
-        }
-        let middle = split(lights, depth);
-        let (first, second) = lights.split_at_mut(middle);
-        let children = [Self::grow(first, depth + 1), Self::grow(second, depth + 1)];
-        let [first, second] = &children;
-        let bounds = first.bounds().union(second.bounds());
-        Self::Inner(bounds, Box::new(children))
-    }
-
-    fn bounds(&self) -> &LightBounds {
-        match self {
-            Self::Leaf(light) => &light.bounds,
-            Self::Inner(bounds, _) => bounds,
-        }
-    }
-
-    /// What would be gained by looking at its children instead; nothing where it has none.
-    fn cost(&self) -> Option<f32> {
-        match self {
-            Self::Leaf(_) => None,
-            Self::Inner(bounds, _) => Some(bounds.cost()),
-        }
-    }
-
-    /// At most [`WIDTH`] branches that are this one together: those that cost most have been opened.
-    fn open(self) -> Vec<Self> {
-        let mut branches = vec![self];
-        while branches.len() < WIDTH {
-            let costs = branches
-                .iter()
-                .enumerate()
-                .filter_map(|(index, branch)| Some((index, branch.cost()?)));
-            let Some((index, _)) = costs.max_by(|(_, one), (_, other)| one.total_cmp(other)) else {
-                break;
-            };
-            if let Self::Inner(_, children) = branches.remove(index) {
-                let [first, second] = *children;
-                branches.insert(index, second);
-                branches.insert(index, first);
-            }
-        }
-        branches
-    }
-}
 
 impl LightTree {
     /// The tree of `lights`; `None` if there are none.
@@ -134,7 +60,7 @@ impl LightTree {
             lights: LightLanes::none(),
             children: [Child::None; WIDTH],
         });
-        for (lane, branch) in branch.open().into_iter().enumerate() {
+        for (lane, branch) in branch.open(WIDTH).into_iter().enumerate() {
             self.nodes[own].lights.put(lane, branch.bounds());
             way.push(lane as u8);
             self.nodes[own].children[lane] = match branch {
@@ -216,62 +142,5 @@ impl Node {
             *share = if *share > 0.0 { mixed } else { 0.0 };
         }
         (sum > 0.0).then_some(shares)
-    }
-}
-
-/// Sorts `lights`, which are at least two, into two groups, and returns the size of the first.
-fn split(lights: &mut [PlacedLight], depth: u32) -> usize {
-    let half = lights.len() / 2;
-    let centres = lights.iter().map(|light| light.bounds.centre());
-    let (low, high) = centres.fold(
-        (Vec3::INFINITY, Vec3::NEG_INFINITY),
-        |(low, high), centre| (low.min(centre), high.max(centre)),
-    );
-    if depth >= BALANCED_DEPTH {
-        return half;
-    }
-    let mut best: Option<(f32, usize, usize)> = None;
-    for axis in 0..3 {
-        if high[axis] <= low[axis] {
-            continue;
-        }
-        let mut buckets: [Option<LightBounds>; BUCKETS] = [None; BUCKETS];
-        for light in lights.iter() {
-            let bucket = &mut buckets[bucket(light, axis, low, high)];
-            *bucket = Some(union(*bucket, Some(light.bounds)).unwrap_or(light.bounds));
-        }
-        for border in 1..BUCKETS {
-            let group = |buckets: &[Option<LightBounds>]| buckets.iter().copied().fold(None, union);
-            let groups = (group(&buckets[..border]), group(&buckets[border..]));
-            let (Some(first), Some(second)) = groups else {
-                continue;
-            };
-            let size = high - low;
-            // Thin boxes are cut across.
-            let regularity = size.max_element() / size[axis];
-            let cost = regularity * (first.cost() + second.cost());
-            if best.is_none_or(|(least, ..)| cost < least) {
-                best = Some((cost, axis, border));
-            }
-        }
-    }
-    let Some((_, axis, border)) = best else {
-        return half;
-    };
-    // A stable partition: the tree depends on nothing but the lights and their order.
-    lights.sort_by_key(|light| bucket(light, axis, low, high) >= border);
-    lights.partition_point(|light| bucket(light, axis, low, high) < border)
-}
-
-/// The bucket of a light along an axis on which the centres reach from `low` to `high`.
-fn bucket(light: &PlacedLight, axis: usize, low: Vec3, high: Vec3) -> usize {
-    let share = (light.bounds.centre()[axis] - low[axis]) / (high[axis] - low[axis]);
-    ((share * BUCKETS as f32) as usize).min(BUCKETS - 1)
-}
-
-fn union(first: Option<LightBounds>, second: Option<LightBounds>) -> Option<LightBounds> {
-    match (first, second) {
-        (Some(first), Some(second)) => Some(first.union(&second)),
-        (first, second) => first.or(second),
     }
 }
