@@ -2,17 +2,15 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
-
 use super::lineage::Birth;
-use super::variant::Variant;
+use super::variant::{Scattering, Variant};
 use crate::embree::{Hits, Rays};
 use crate::film::FilmTile;
 use crate::lanes::{CHUNK, VectorColumn};
 use crate::learning::Knowledge;
 use crate::room::{gather, make_room, resize};
 use crate::sampling::{PixelSequences, Ranks, Sampler, SequencePoint, SolidAnglePdf};
-use crate::scene::{HitCoordinates, Refraction};
+use crate::scene::{HitCoordinates, Receiver, Refraction};
 use crate::spectrum::Colour;
 
 /// The camera paths of a batch: what all particles that descend from one have in common. Paths of one pixel stand side
@@ -60,15 +58,6 @@ pub(super) struct Segments<C: Colour> {
     pub hits: Hits,
     /// How they came to be. Empty but where the render learns.
     pub births: Vec<Birth>,
-}
-
-/// A surface to which next-event estimation looks for light.
-#[derive(Clone, Copy)]
-pub(super) struct Receiver {
-    /// Position in world space.
-    pub position: Vec3,
-    /// Unit shading normal in world space, on either side.
-    pub normal: Vec3,
 }
 
 /// Surface points that scatter light.
@@ -272,6 +261,7 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
         Receiver {
             position: self.position.get(i),
             normal: self.normal.get(i),
+            is_two_sided: self.bsdf[i].is_two_sided(),
         }
     }
 

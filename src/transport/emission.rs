@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 use multiversion::multiversion;
 
-use super::batch::{CameraPaths, Receiver, Segments, Vertices};
+use super::batch::{CameraPaths, Segments, Vertices};
 use super::engine::Engine;
 use super::lineage::Generation;
 use super::settings::DirectLight;
@@ -210,9 +210,7 @@ impl Engine {
             return 1.0;
         }
         let chosen_with = match segments.origins.get(i) {
-            Some(&Receiver { position, normal }) => {
-                self.light_choice.probability(position, normal, emitter)
-            }
+            Some(receiver) => self.light_choice.probability(receiver, emitter),
             None => 1.0,
         };
         power_heuristic(

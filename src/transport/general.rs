@@ -31,6 +31,8 @@ pub(super) struct Local<S> {
     /// Unit direction to where the path comes from, in that frame.
     outgoing: Vec3,
     bsdf: Bsdf<S>,
+    /// See [`Material::scatters_below`](crate::scene::Material::scatters_below).
+    is_two_sided: bool,
     /// What refraction has done to the path.
     refraction: Refraction,
 }
@@ -79,6 +81,7 @@ impl<S: SpectrumArithmetic> Local<S> {
             frame,
             outgoing: seen.outgoing,
             bsdf: material.bsdf::<C>(&seen, arrival.wavelengths())?,
+            is_two_sided: material.scatters_below(),
             refraction: arrival.refraction(),
         })
     }
@@ -119,6 +122,11 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
     #[inline]
     fn has_smooth_lobe(&self) -> bool {
         self.bsdf.has_smooth_lobe()
+    }
+
+    #[inline]
+    fn is_two_sided(&self) -> bool {
+        self.is_two_sided
     }
 
     #[inline]

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::batch::{CameraPaths, Receiver, Vertices};
+use super::batch::{CameraPaths, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
 use super::variant::{Scattering, Variant};
@@ -150,8 +150,10 @@ impl<C: Colour> LightChunk<C> {
                 self.probability[lane] = 0.0;
                 continue;
             }
-            let Receiver { position, normal } = vertices.receiver(i);
-            match engine.light_choice.choose(position, normal, numbers[lane]) {
+            match engine
+                .light_choice
+                .choose(&vertices.receiver(i), numbers[lane])
+            {
                 Some(chosen) => {
                     self.emitter[lane] = chosen.emitter as u32;
                     self.probability[lane] = chosen.probability;

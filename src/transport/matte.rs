@@ -61,6 +61,11 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     }
 
     #[inline(always)]
+    fn is_two_sided(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
     fn guiding(&self) -> Guiding {
         Guiding::Alone
     }

@@ -181,6 +181,9 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
     /// Whether next-event estimation can find light here: not where all lobes are discrete.
     fn has_smooth_lobe(&self) -> bool;
 
+    /// Whether light that arrives below the shading normal's horizon can be scattered to where the path comes from.
+    fn is_two_sided(&self) -> bool;
+
     /// Whether what was learned can draw the directions of children, and whether alone.
     fn guiding(&self) -> Guiding;
 

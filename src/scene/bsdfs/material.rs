@@ -26,6 +26,7 @@ pub struct Material {
     source: Option<Box<Source>>,
     needs_parameters: bool,
     is_mixed: bool,
+    scatters_below: bool,
     /// The mesh attributes that it asks for.
     attributes: Vec<AskedAttribute>,
 }
@@ -57,6 +58,7 @@ impl Material {
         Self {
             needs_parameters: tree.needs_parameters(),
             is_mixed: tree.is_mixed(),
+            scatters_below: tree.is_transmissive() || tree.is_tilted(),
             attributes: Vec::new(),
             source: None,
             tree,
@@ -99,6 +101,13 @@ impl Material {
     #[inline]
     pub fn is_mixed(&self) -> bool {
         self.is_mixed
+    }
+
+    /// Whether light that arrives below the horizon of the shape's shading normal can be scattered above it, or what arrives above it below: it is
+    /// transmitted, or the surface has normals of its own.
+    #[inline]
+    pub fn scatters_below(&self) -> bool {
+        self.scatters_below
     }
 
     /// Whether light goes through it somewhere.

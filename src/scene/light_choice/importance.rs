@@ -1,7 +1,6 @@
 //! What lights can contribute to a surface, guessed for several at once.
 
-use glam::Vec3;
-
+use super::Receiver;
 use super::bounds::LightBounds;
 use crate::lanes::VectorLanes;
 
@@ -24,7 +23,7 @@ pub struct LightLanes<const N: usize> {
 /// Importances lie between these limits, so that their quotients are numbers.
 const IMPORTANCES: [f32; 2] = [1e-30, 1e30];
 
-/// How far rounding may put light outside of its cone, in radians.
+/// How far rounding may put light outside of its cone or below the surface, in radians.
 const SLACK: f32 = 1e-3;
 
 impl<const N: usize> LightLanes<N> {
@@ -51,12 +50,16 @@ impl<const N: usize> LightLanes<N> {
         self.spread_cosine[lane] = (bounds.spread + SLACK).cos();
     }
 
-    /// Estimates of what arrives from the lights of each lane at a surface at `position` (world space) with this unit `normal`, of
-    /// either side; 0 only where nothing can.
+    /// Estimates of what arrives from the lights of each lane at a surface; 0 only where nothing can.
     ///
     /// Conty Estevez and Kulla 2018, equation 3, with the bounding sphere of the box as in pbrt-v4.
     #[inline(always)]
-    pub fn importances(&self, position: Vec3, normal: Vec3) -> [f32; N] {
+    pub fn importances(&self, receiver: &Receiver) -> [f32; N] {
+        let &Receiver {
+            position,
+            normal,
+            is_two_sided,
+        } = receiver;
         let mut importances = [0.0; N];
         // No jumps: one loop over lanes.
         for (lane, importance) in importances.iter_mut().enumerate() {
@@ -75,10 +78,14 @@ impl<const N: usize> LightLanes<N> {
             // The least angle between a normal and a direction to the position.
             let emission = Angle::with_cosine(-self.axis.get(lane).dot(towards_light));
             let emission = emission.less(normals).less(seen);
-            let incidence = Angle::with_cosine(normal.dot(towards_light).abs()).less(seen);
+            let cosine = normal.dot(towards_light);
+            let cosine = choose(is_two_sided, cosine.abs(), cosine);
+            // The least angle between the normal and a direction to the lights.
+            let incidence = Angle::with_cosine(cosine).less(seen);
             let arriving = power * emission.cosine * incidence.cosine / distance_squared;
             let guess = choose(is_within, power / radius_squared, arriving);
-            let can_arrive = is_within | (emission.cosine >= self.spread_cosine[lane]);
+            let is_above = incidence.cosine >= -SLACK;
+            let can_arrive = is_within | (emission.cosine >= self.spread_cosine[lane]) & is_above;
             *importance = choose((power > 0.0) & can_arrive, within_limits(guess), 0.0);
         }
         importances

@@ -41,6 +41,17 @@ enum Kind {
     },
 }
 
+/// A surface to which light is to be found.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    /// Position in world space.
+    pub position: Vec3,
+    /// Unit shading normal in world space, on the side from which it is looked at.
+    pub normal: Vec3,
+    /// Whether light counts that arrives on the other side: it may go through.
+    pub is_two_sided: bool,
+}
+
 /// An emitter chosen for a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChosenLight {
@@ -107,10 +118,9 @@ impl LightChoice {
         matches!(self.0, Kind::Several { .. })
     }
 
-    /// Chooses an emitter for a surface at `position` (world space) with this unit `normal`, of either side, from the
-    /// uniform number `u` in [0, 1). `None` where no light can arrive.
+    /// Chooses an emitter for a surface from the uniform number `u` in [0, 1). `None` where no light can arrive.
     #[inline(always)]
-    pub fn choose(&self, position: Vec3, normal: Vec3, u: f32) -> Option<ChosenLight> {
+    pub fn choose(&self, receiver: &Receiver, u: f32) -> Option<ChosenLight> {
         match &self.0 {
             Kind::None => None,
             &Kind::Only(emitter) => Some(ChosenLight {
@@ -134,7 +144,7 @@ impl LightChoice {
                         remainder,
                     }),
                     (None, Some(tree)) => {
-                        let chosen = tree.choose(position, normal, remainder)?;
+                        let chosen = tree.choose(receiver, remainder)?;
                         Some(ChosenLight {
                             probability: chosen.probability * each,
                             ..chosen
@@ -148,7 +158,7 @@ impl LightChoice {
 
     /// The probability with which [`Self::choose`] chooses `emitter` for the same surface.
     #[inline]
-    pub fn probability(&self, position: Vec3, normal: Vec3, emitter: usize) -> f32 {
+    pub fn probability(&self, receiver: &Receiver, emitter: usize) -> f32 {
         match &self.0 {
             Kind::None => 0.0,
             &Kind::Only(only) => f32::from(u8::from(emitter == only)),
@@ -161,9 +171,7 @@ impl LightChoice {
                     return *each;
                 }
                 let tree = tree.as_ref();
-                tree.map_or(0.0, |tree| {
-                    tree.probability(position, normal, emitter) * each
-                })
+                tree.map_or(0.0, |tree| tree.probability(receiver, emitter) * each)
             }
         }
     }

@@ -62,20 +62,33 @@ fn lamps(count: usize, seed: u32) -> Scene {
     scene(&text)
 }
 
-/// A place on a surface among the lamps, and its normal.
-fn surface(random: &mut RandomStream) -> (Vec3, Vec3) {
-    let position = Vec3::from([(); 3].map(|()| 24.0 * random.uniform() - 12.0));
-    let normal = crate::sampling::warp::sphere(random.uniform_2d());
-    (position, normal)
+/// A surface among the lamps, which is looked at from one side or lets light through.
+fn surface(random: &mut RandomStream) -> Receiver {
+    Receiver {
+        position: Vec3::from([(); 3].map(|()| 24.0 * random.uniform() - 12.0)),
+        normal: crate::sampling::warp::sphere(random.uniform_2d()),
+        is_two_sided: random.uniform() < 0.5,
+    }
 }
+
+/// Whether light from this direction counts at a surface.
+fn counts(receiver: &Receiver, direction: Vec3) -> bool {
+    receiver.is_two_sided || receiver.normal.dot(direction) > 0.0
+}
+
+/// A surface at the origin, looked at from above (z).
+const UPWARDS: Receiver = Receiver {
+    position: Vec3::ZERO,
+    normal: Vec3::Z,
+    is_two_sided: false,
+};
 
 #[test]
 fn without_a_choice_there_is_nothing_to_choose() {
-    let place = (Vec3::ZERO, Vec3::Z, 0.25);
     let none = choice(&scene(""));
     assert!(!none.depends_on_surface());
-    assert_eq!(none.choose(place.0, place.1, place.2), None);
-    assert_eq!(none.probability(place.0, place.1, 0), 0.0);
+    assert_eq!(none.choose(&UPWARDS, 0.25), None);
+    assert_eq!(none.probability(&UPWARDS, 0), 0.0);
     let black = r#"<emitter type="point"><rgb name="intensity" value="0"/></emitter>"#;
     for only in [r#"<emitter type="constant"/>"#, r#"<emitter type="spot"/>"#] {
         let only = choice(&scene(&format!("{black}{only}")));
@@ -85,9 +98,9 @@ fn without_a_choice_there_is_nothing_to_choose() {
             probability: 1.0,
             remainder: 0.25,
         };
-        assert_eq!(only.choose(place.0, place.1, place.2), Some(chosen));
-        assert_eq!(only.probability(place.0, place.1, 0), 0.0);
-        assert_eq!(only.probability(place.0, place.1, 1), 1.0);
+        assert_eq!(only.choose(&UPWARDS, 0.25), Some(chosen));
+        assert_eq!(only.probability(&UPWARDS, 0), 0.0);
+        assert_eq!(only.probability(&UPWARDS, 1), 1.0);
     }
 }
 
@@ -98,7 +111,11 @@ fn lights_from_afar_stand_beside_the_tree() {
         r#"{point}<emitter type="constant"/>{point}<emitter type="directional"/>{point}"#
     ));
     let choice = choice(&scene);
-    let probabilities = [0, 1, 2, 3, 4].map(|i| choice.probability(Vec3::X, Vec3::X, i));
+    let receiver = Receiver {
+        position: Vec3::X,
+        ..UPWARDS
+    };
+    let probabilities = [0, 1, 2, 3, 4].map(|i| choice.probability(&receiver, i));
     assert_eq!((probabilities[1], probabilities[3]), (1.0 / 3.0, 1.0 / 3.0));
     for near in [0, 2, 4] {
         assert!(
@@ -118,22 +135,22 @@ fn choices_follow_their_probabilities() {
         let choice = choice(&scene);
         let mut random = random(99);
         for _ in 0..20 {
-            let (position, normal) = surface(&mut random);
+            let receiver = surface(&mut random);
             let mut counts = vec![0.0; count];
             let mut nothing = 0.0;
             for _ in 0..DRAWS {
                 let u = random.uniform();
-                let Some(chosen) = choice.choose(position, normal, u) else {
+                let Some(chosen) = choice.choose(&receiver, u) else {
                     nothing += 1.0;
                     continue;
                 };
                 counts[chosen.emitter] += 1.0;
-                let probability = choice.probability(position, normal, chosen.emitter);
+                let probability = choice.probability(&receiver, chosen.emitter);
                 assert_eq!(chosen.probability, probability);
                 assert!((0.0..1.0).contains(&chosen.remainder));
             }
             let probabilities: Vec<f64> = (0..count)
-                .map(|emitter| f64::from(choice.probability(position, normal, emitter)))
+                .map(|emitter| f64::from(choice.probability(&receiver, emitter)))
                 .collect();
             let total: f64 = probabilities.iter().sum();
             assert!(total < 1.0 + 1e-5, "{total}");
@@ -162,6 +179,25 @@ fn choices_follow_their_probabilities() {
     }
 }
 
+/// Of points above and below a surface, those below are chosen only where light goes through it.
+#[test]
+fn lights_below_the_surface_are_left_out() {
+    let point = |z: f32| {
+        format!(r#"<emitter type="point"><point name="position" x="1" y="2" z="{z}"/></emitter>"#)
+    };
+    let scene = scene(&[3.0, -3.0, 5.0, -4.0].map(point).concat());
+    let choice = choice(&scene);
+    let probabilities = |receiver| [0, 1, 2, 3].map(|i| choice.probability(&receiver, i));
+    let [first, below, second, further_below] = probabilities(UPWARDS);
+    assert_eq!((below, further_below), (0.0, 0.0));
+    assert!(first > second && (first + second - 1.0).abs() < 1e-6);
+    let through = probabilities(Receiver {
+        is_two_sided: true,
+        ..UPWARDS
+    });
+    assert!(through.iter().all(|&p| p > 0.1), "{through:?}");
+}
+
 /// Points that shine everywhere leave no place without light: the probabilities add up to 1.
 #[test]
 fn probabilities_add_up() {
@@ -177,10 +213,11 @@ fn probabilities_add_up() {
     }
     let choice = choice(&scene(&text));
     for _ in 0..100 {
-        let (position, normal) = surface(&mut random);
-        let total: f32 = (0..50)
-            .map(|i| choice.probability(position, normal, i))
-            .sum();
+        let receiver = Receiver {
+            is_two_sided: true,
+            ..surface(&mut random)
+        };
+        let total: f32 = (0..50).map(|i| choice.probability(&receiver, i)).sum();
         assert!((total - 1.0).abs() < 1e-4, "{total}");
     }
 }
@@ -194,12 +231,12 @@ proptest! {
         let choice = choice(&scene);
         let mut random = random(seed ^ 1);
         for _ in 0..50 {
-            let (position, normal) = surface(&mut random);
+            let receiver = surface(&mut random);
             for (index, emitter) in scene.emitters.iter().enumerate() {
                 let u = random.uniform_2d();
-                let sample = emitter.sample::<Rgb>(&scene.shapes, position, &(), u);
-                if sample.is_some_and(|sample| sample.weight.0[0] > 0.0) {
-                    let probability = choice.probability(position, normal, index);
+                let sample = emitter.sample::<Rgb>(&scene.shapes, receiver.position, &(), u);
+                if sample.is_some_and(|sample| sample.weight.0[0] > 0.0 && counts(&receiver, sample.direction)) {
+                    let probability = choice.probability(&receiver, index);
                     prop_assert!(probability > 0.0, "{:?}", scene.emitters[index]);
                 }
             }
@@ -218,6 +255,11 @@ fn the_right_lamps_are_chosen() {
     for _ in 0..DRAWS {
         let [x, z] = random.uniform_2d().map(|u| 20.0 * u - 10.0);
         let (position, normal) = (Vec3::new(x, -10.5, z), Vec3::Y);
+        let receiver = Receiver {
+            position,
+            normal,
+            is_two_sided: false,
+        };
         let u = random.uniform_2d();
         let arrives = |emitter: usize| {
             let sample = scene.emitters[emitter].sample::<Rgb>(&scene.shapes, position, &(), u);
@@ -226,7 +268,7 @@ fn the_right_lamps_are_chosen() {
             })
         };
         let v = random.uniform();
-        if let Some(chosen) = choice.choose(position, normal, v) {
+        if let Some(chosen) = choice.choose(&receiver, v) {
             let value = arrives(chosen.emitter) / f64::from(chosen.probability);
             mean += value / DRAWS as f64;
             squares += value * value / DRAWS as f64;

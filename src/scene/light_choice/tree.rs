@@ -3,11 +3,9 @@
 //! Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting" (without the splitting). Their tree is binary; here every node takes
 //! the place of several of theirs and has up to [`WIDTH`] children, which are looked at together, as lanes.
 
-use glam::Vec3;
-
 use super::branch::{Branch, PlacedLight};
 use super::importance::LightLanes;
-use super::{BELOW_ONE, ChosenLight};
+use super::{BELOW_ONE, ChosenLight, Receiver};
 
 /// The most children of a node.
 const WIDTH: usize = 8;
@@ -77,10 +75,10 @@ impl LightTree {
 
     /// Chooses a light for a surface from `u` in [0, 1). `None` where no light can arrive.
     #[inline(always)]
-    pub fn choose(&self, position: Vec3, normal: Vec3, mut u: f32) -> Option<ChosenLight> {
+    pub fn choose(&self, receiver: &Receiver, mut u: f32) -> Option<ChosenLight> {
         let (mut node, mut probability) = (&self.nodes[0], 1.0);
         loop {
-            let shares = node.shares(position, normal)?;
+            let shares = node.shares(receiver)?;
             let (mut lane, mut before, mut end) = (0, 0.0, 0.0);
             for (child, &share) in shares.iter().enumerate() {
                 // Of what rounding leaves beyond all shares, the last that has one gets the rest.
@@ -107,13 +105,13 @@ impl LightTree {
 
     /// The probability with which [`Self::choose`] chooses an emitter.
     #[inline]
-    pub fn probability(&self, position: Vec3, normal: Vec3, emitter: usize) -> f32 {
+    pub fn probability(&self, receiver: &Receiver, emitter: usize) -> f32 {
         let Some(Some(way)) = self.ways.get(emitter) else {
             return 0.0;
         };
         let (mut node, mut probability) = (&self.nodes[0], 1.0);
         for &lane in way {
-            let Some(shares) = node.shares(position, normal) else {
+            let Some(shares) = node.shares(receiver) else {
                 return 0.0;
             };
             probability *= shares[usize::from(lane)];
@@ -128,8 +126,8 @@ impl LightTree {
 impl Node {
     /// The probabilities of the children; `None` where none of their lights can arrive.
     #[inline(always)]
-    fn shares(&self, position: Vec3, normal: Vec3) -> Option<[f32; WIDTH]> {
-        let mut shares = self.lights.importances(position, normal);
+    fn shares(&self, receiver: &Receiver) -> Option<[f32; WIDTH]> {
+        let mut shares = self.lights.importances(receiver);
         // Of numbers up to 10^30 eight are no infinite sum.
         let sum: f32 = shares.iter().sum();
         let possible: f32 = shares
