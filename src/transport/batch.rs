@@ -261,7 +261,7 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
         Receiver {
             position: self.position.get(i),
             normal: self.normal.get(i),
-            is_two_sided: self.bsdf[i].is_two_sided(),
+            scatters_below: self.bsdf[i].scatters_below(),
         }
     }
 

@@ -32,7 +32,7 @@ pub(super) struct Local<S> {
     outgoing: Vec3,
     bsdf: Bsdf<S>,
     /// See [`Material::scatters_below`](crate::scene::Material::scatters_below).
-    is_two_sided: bool,
+    scatters_below: bool,
     /// What refraction has done to the path.
     refraction: Refraction,
 }
@@ -81,7 +81,7 @@ impl<S: SpectrumArithmetic> Local<S> {
             frame,
             outgoing: seen.outgoing,
             bsdf: material.bsdf::<C>(&seen, arrival.wavelengths())?,
-            is_two_sided: material.scatters_below(),
+            scatters_below: material.scatters_below(),
             refraction: arrival.refraction(),
         })
     }
@@ -125,8 +125,8 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
     }
 
     #[inline]
-    fn is_two_sided(&self) -> bool {
-        self.is_two_sided
+    fn scatters_below(&self) -> bool {
+        self.scatters_below
     }
 
     #[inline]

@@ -61,7 +61,7 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     }
 
     #[inline(always)]
-    fn is_two_sided(&self) -> bool {
+    fn scatters_below(&self) -> bool {
         false
     }
 

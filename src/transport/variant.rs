@@ -182,7 +182,7 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
     fn has_smooth_lobe(&self) -> bool;
 
     /// Whether light that arrives below the shading normal's horizon can be scattered to where the path comes from.
-    fn is_two_sided(&self) -> bool;
+    fn scatters_below(&self) -> bool;
 
     /// Whether what was learned can draw the directions of children, and whether alone.
     fn guiding(&self) -> Guiding;

@@ -103,8 +103,8 @@ impl Material {
         self.is_mixed
     }
 
-    /// Whether light that arrives below the horizon of the shape's shading normal can be scattered above it, or what arrives above it below: it is
-    /// transmitted, or the surface has normals of its own.
+    /// Whether light that arrives below the horizon of the shape's shading normal can be scattered above it: some is transmitted, or a map tilts the surface
+    /// so far that its back is seen.
     #[inline]
     pub fn scatters_below(&self) -> bool {
         self.scatters_below

@@ -58,7 +58,7 @@ impl<const N: usize> LightLanes<N> {
         let &Receiver {
             position,
             normal,
-            is_two_sided,
+            scatters_below,
         } = receiver;
         let mut importances = [0.0; N];
         // No jumps: one loop over lanes.
@@ -79,7 +79,7 @@ impl<const N: usize> LightLanes<N> {
             let emission = Angle::with_cosine(-self.axis.get(lane).dot(towards_light));
             let emission = emission.less(normals).less(seen);
             let cosine = normal.dot(towards_light);
-            let cosine = choose(is_two_sided, cosine.abs(), cosine);
+            let cosine = choose(scatters_below, cosine.abs(), cosine);
             // The least angle between the normal and a direction to the lights.
             let incidence = Angle::with_cosine(cosine).less(seen);
             let arriving = power * emission.cosine * incidence.cosine / distance_squared;

@@ -48,8 +48,8 @@ pub struct Receiver {
     pub position: Vec3,
     /// Unit shading normal in world space, on the side from which it is looked at.
     pub normal: Vec3,
-    /// Whether light counts that arrives on the other side: it may go through.
-    pub is_two_sided: bool,
+    /// Whether light that arrives on the other side can be scattered to this one.
+    pub scatters_below: bool,
 }
 
 /// An emitter chosen for a surface.

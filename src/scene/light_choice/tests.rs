@@ -67,20 +67,20 @@ fn surface(random: &mut RandomStream) -> Receiver {
     Receiver {
         position: Vec3::from([(); 3].map(|()| 24.0 * random.uniform() - 12.0)),
         normal: crate::sampling::warp::sphere(random.uniform_2d()),
-        is_two_sided: random.uniform() < 0.5,
+        scatters_below: random.uniform() < 0.5,
     }
 }
 
 /// Whether light from this direction counts at a surface.
 fn counts(receiver: &Receiver, direction: Vec3) -> bool {
-    receiver.is_two_sided || receiver.normal.dot(direction) > 0.0
+    receiver.scatters_below || receiver.normal.dot(direction) > 0.0
 }
 
 /// A surface at the origin, looked at from above (z).
 const UPWARDS: Receiver = Receiver {
     position: Vec3::ZERO,
     normal: Vec3::Z,
-    is_two_sided: false,
+    scatters_below: false,
 };
 
 #[test]
@@ -192,7 +192,7 @@ fn lights_below_the_surface_are_left_out() {
     assert_eq!((below, further_below), (0.0, 0.0));
     assert!(first > second && (first + second - 1.0).abs() < 1e-6);
     let through = probabilities(Receiver {
-        is_two_sided: true,
+        scatters_below: true,
         ..UPWARDS
     });
     assert!(through.iter().all(|&p| p > 0.1), "{through:?}");
@@ -214,7 +214,7 @@ fn probabilities_add_up() {
     let choice = choice(&scene(&text));
     for _ in 0..100 {
         let receiver = Receiver {
-            is_two_sided: true,
+            scatters_below: true,
             ..surface(&mut random)
         };
         let total: f32 = (0..50).map(|i| choice.probability(&receiver, i)).sum();
@@ -258,7 +258,7 @@ fn the_right_lamps_are_chosen() {
         let receiver = Receiver {
             position,
             normal,
-            is_two_sided: false,
+            scatters_below: false,
         };
         let u = random.uniform_2d();
         let arrives = |emitter: usize| {

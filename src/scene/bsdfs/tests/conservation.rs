@@ -1,10 +1,12 @@
 //! Energy is conserved, and light may go both ways.
 
+use std::sync::LazyLock;
+
 use glam::Vec3;
 use proptest::prelude::*;
 
 use super::{direction, material, materials, numbers, seen_in_rgb};
-use crate::scene::bsdfs::{Bsdf, Side};
+use crate::scene::bsdfs::{Bsdf, Material, Side};
 use crate::spectrum::{Spectrum, SpectrumArithmetic};
 
 /// What a white furnace shows: the mean of the weights, without the scaling of refracted radiance.
@@ -112,6 +114,23 @@ fn what_absorbs_nothing_loses_nothing() {
     }
 }
 
+/// A map that tilts a surface so far that its back is seen from some directions, and scatters.
+static TILTED: LazyLock<Material> = LazyLock::new(|| {
+    material(
+        r#"<bsdf type="normalmap"><rgb name="normalmap" value="0.1, 0.5, 0.7"/>
+            <boolean name="flip_invalid_normals" value="false"/><bsdf type="twosided"><bsdf type="diffuse"/></bsdf></bsdf>"#,
+    )
+});
+
+/// Nothing that is opaque and not tilted says that it scatters light from below.
+#[test]
+fn opaque_surfaces_scatter_nothing_from_below() {
+    for (case, material) in materials() {
+        let expected = material.is_transmissive() || case.name.contains("map");
+        assert_eq!(material.scatters_below(), expected, "{}", case.name);
+    }
+}
+
 fn any_direction() -> impl Strategy<Value = Vec3> {
     (0.02f32..1.0, 0.0f32..std::f32::consts::TAU).prop_map(|(cos, azimuth)| direction(cos, azimuth))
 }
@@ -147,6 +166,18 @@ proptest! {
             for (&f, &r) in (forth * compression).components().iter().zip(return_way.components()) {
                 prop_assert!((f - r).abs() <= 3e-3 * f.max(r) + 1e-5, "{}: {f} {r}", case.name);
             }
+        }
+    }
+
+    /// Light that arrives below the surface comes out above it only through materials that say so.
+    #[test]
+    fn light_from_below_is_scattered_where_that_is_said(outgoing in any_direction(), incident in any_direction(), back: bool) {
+        let of_cases = materials().iter().map(|(case, material)| (case.name, material));
+        for (name, material) in of_cases.chain([("tilted", &*TILTED)]) {
+            let side = if back { Side::Back } else { Side::Front };
+            let Some(bsdf) = seen_in_rgb(material, side, outgoing) else { continue };
+            let value = bsdf.evaluate(outgoing, -incident);
+            prop_assert!(value.value.is_black() || material.scatters_below(), "{name}: {value:?}");
         }
     }
 
