@@ -2,9 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::light_sums::LightSums;
 use super::mixture::MixtureSums;
 use super::square_warp::SIDE;
-use super::{CellTree, Insight, Observation, Observations, PixelObservation, SquareWarp};
+use super::{
+    CellTree, Insight, LightObservation, Observation, Observations, PixelObservation, SquareWarp,
+};
 use crate::sampling::FRAME_CLASSES;
 
 /// A cell is halved when more observations than this are in it: some dozens for each bin of the normals that it has.
@@ -43,6 +46,7 @@ struct Sums {
     square: f32,
     cost: f32,
     mixture: MixtureSums,
+    lights: LightSums,
     bins: [[BinSums; SIDE]; SIDE],
 }
 
@@ -68,6 +72,7 @@ impl Sums {
         self.square += share * other.square;
         self.cost += share * other.cost;
         self.mixture.add(&other.mixture, share);
+        self.lights.add(&other.lights, share);
         let bins = self.bins.as_flattened_mut().iter_mut();
         for (bin, other) in bins.zip(other.bins.as_flattened()) {
             bin.add(*other, share);
@@ -107,6 +112,7 @@ impl Sums {
             cost: filled(self.cost, family.cost),
             guides,
             mixed_share: family.mixture.best(),
+            lights: self.lights.weights(&family.lights),
             warp: if guides { warp } else { SquareWarp::UNIFORM },
         }
     }
@@ -135,6 +141,9 @@ impl Experience {
         for observation in &observations.segments {
             self.observe(observation);
         }
+        for observation in &observations.lights {
+            self.observe_light(observation);
+        }
         for observation in &observations.pixels {
             let pixel = observation.pixel as usize;
             if pixel >= self.pixels.len() {
@@ -156,7 +165,22 @@ impl Experience {
         if !(is_finite(observation.radiance) && is_finite(square)) {
             return;
         }
-        let address = observation.address as usize;
+        self.sums_at(observation.address).observe(observation);
+    }
+
+    /// Adds a look at a light; one that is not finite is none.
+    fn observe_light(&mut self, observation: &LightObservation) {
+        let square = observation.value * observation.value;
+        if (0.0..=f32::MAX).contains(&square) {
+            self.sums_at(observation.address)
+                .lights
+                .observe(observation);
+        }
+    }
+
+    /// The sums of an address.
+    fn sums_at(&mut self, address: u32) -> &mut Sums {
+        let address = address as usize;
         if address >= self.places.len() {
             self.places.resize(address + 1, 0);
         }
@@ -165,7 +189,7 @@ impl Experience {
             self.sums.push(Sums::default());
             *place = self.sums.len() as u32;
         }
-        self.sums[*place as usize - 1].observe(observation);
+        &mut self.sums[*place as usize - 1]
     }
 
     /// Divides the cells of `tree` in which there is much to tell apart.

@@ -2,13 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use super::{Experience, Observation, PixelObservation};
+use super::{Experience, LightObservation, Observation, PixelObservation};
 
 /// What was observed in one tile.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Observations {
     /// Of path segments.
     pub segments: Vec<Observation>,
+    /// Of lights.
+    pub lights: Vec<LightObservation>,
     /// Of camera paths.
     pub pixels: Vec<PixelObservation>,
 }
@@ -63,6 +65,7 @@ mod tests {
         let value = [1e8, 1.0, 2.0, 3.0, 4.0][number];
         Observations {
             segments: vec![observation(value), observation(0.5 * value)],
+            lights: Vec::new(),
             pixels: vec![PixelObservation {
                 pixel: number as u32,
                 paths: 1,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{CellTree, Experience, GuidedShare, PixelKnowledge, SquareWarp};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{FRAME_CLASSES, Frame};
-use crate::scene::ImageSize;
+use crate::scene::{GroupWeights, ImageSize};
 
 /// Halvings along each axis with which cells begin.
 const FIRST_HALVINGS: u32 = 3;
@@ -27,6 +27,8 @@ pub struct Insight {
     pub guides: bool,
     /// How many of them, at surfaces with broad lobes of their own; it means nothing where they do not gain.
     pub mixed_share: GuidedShare,
+    /// How the groups of lights are chosen.
+    pub lights: GroupWeights,
     /// From where, on the square that directions are drawn from; uniform where they do not gain.
     pub warp: SquareWarp,
 }
@@ -39,6 +41,7 @@ impl Insight {
         cost: 1.0,
         guides: false,
         mixed_share: GuidedShare::UNKNOWN,
+        lights: GroupWeights::EQUAL,
         warp: SquareWarp::UNIFORM,
     };
 }
@@ -151,7 +154,15 @@ mod tests {
     fn teach(knowledge: &mut Knowledge, segments: Vec<Observation>) {
         let mut gathering = Gathering::new(knowledge.take_experience(), 0);
         let pixels = Vec::new();
-        gathering.add(0, Observations { segments, pixels });
+        let lights = Vec::new();
+        gathering.add(
+            0,
+            Observations {
+                segments,
+                lights,
+                pixels,
+            },
+        );
         knowledge.give_back(gathering.into_experience());
         knowledge.learn();
     }

@@ -13,12 +13,14 @@
 //! - [`pixels`]: how bright the image is
 //! - [`reliance`]: which of it a render goes by
 //! - [`square_warp`]: a histogram that warps the unit square from which directions are drawn
+//! - [`light_sums`]: which groups of lights send more than is guessed
 //! - [`knowledge`]: what is asked while paths are traced
 
 pub mod cell_tree;
 pub mod experience;
 pub mod gathering;
 pub mod knowledge;
+pub mod light_sums;
 pub mod mixture;
 pub mod observation;
 pub mod pixels;
@@ -30,7 +32,7 @@ pub use experience::Experience;
 pub use gathering::{Gathering, Observations};
 pub use knowledge::{Insight, Knowledge};
 pub use mixture::{GuidedShare, MixedDirection, Odds};
-pub use observation::{Observation, PixelObservation};
+pub use observation::{LightObservation, Observation, PixelObservation};
 pub use pixels::PixelKnowledge;
 pub use reliance::Reliance;
 pub use square_warp::{Bin, SquareWarp};

@@ -22,6 +22,21 @@ pub struct Observation {
     pub cost: f32,
 }
 
+/// What one look at a light brought to a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightObservation {
+    /// Where the vertex was (see [`Knowledge::address`](super::Knowledge::address)).
+    pub address: u32,
+    /// The group to which the light belongs.
+    pub group: u8,
+    /// The probability of the group by what is guessed alone.
+    pub guessed: f32,
+    /// That with which it was chosen.
+    pub chosen: f32,
+    /// What it was worth: an estimate of the light that the vertex reflects, with albedo 1.
+    pub value: f32,
+}
+
 /// What the camera paths of one pixel brought back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PixelObservation {

@@ -51,13 +51,22 @@ pub(super) struct Segments<C: Colour> {
     /// no other technique can draw.
     pub direction_pdf: Vec<SolidAnglePdf>,
     /// The surface that each left, where next-event estimation chose its light by it; else empty.
-    pub origins: Vec<Receiver>,
+    pub origins: Vec<Origin>,
     /// The rays themselves, in world space.
     pub rays: Rays,
     /// What they hit.
     pub hits: Hits,
     /// How they came to be. Empty but where the render learns.
     pub births: Vec<Birth>,
+}
+
+/// A surface that a ray has left.
+#[derive(Clone, Copy)]
+pub(super) struct Origin {
+    /// As next-event estimation saw it.
+    pub receiver: Receiver,
+    /// What was learned there (see [`Knowledge::insight`]); of nothing where nothing is learned.
+    pub insight: u32,
 }
 
 /// Surface points that scatter light.
@@ -95,6 +104,8 @@ pub(super) struct ShadowRays<C: Colour> {
     pub path: Vec<u32>,
     /// The segment at whose end each starts. Empty but where the render learns.
     pub segment: Vec<u32>,
+    /// Which look at a light each is (see [`Lineage`](super::lineage::Lineage)). Empty likewise.
+    pub look: Vec<u32>,
     /// What it contributes if nothing is in the way.
     pub contribution: Vec<C::Spectrum>,
     /// The rays themselves, in world space.
@@ -265,6 +276,15 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
         }
     }
 
+    /// A vertex as a surface that rays leave.
+    #[inline(always)]
+    pub fn origin(&self, i: usize) -> Origin {
+        Origin {
+            receiver: self.receiver(i),
+            insight: self.insight.get(i).copied().unwrap_or_default(),
+        }
+    }
+
     /// The clearances of a chunk of vertices, put into `lanes`; `None` where the scene has no instances.
     #[inline(always)]
     pub fn clearances<'l>(
@@ -305,6 +325,7 @@ impl<C: Colour> ShadowRays<C> {
         Self {
             path: Vec::new(),
             segment: Vec::new(),
+            look: Vec::new(),
             contribution: Vec::new(),
             rays: Rays::default(),
         }
@@ -314,6 +335,7 @@ impl<C: Colour> ShadowRays<C> {
     pub fn restart(&mut self, count: usize) {
         make_room(&mut self.path, count);
         self.segment.clear();
+        self.look.clear();
         make_room(&mut self.contribution, count);
         self.rays.resize(count);
     }

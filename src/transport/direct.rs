@@ -7,11 +7,11 @@ use super::batch::{CameraPaths, ShadowRays, Vertices};
 use super::engine::Engine;
 use super::guidance::Guidance;
 use super::light_chunk::LightChunk;
-use super::lineage::Generation;
+use super::lineage::Lineage;
 use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
-use crate::learning::Knowledge;
+use crate::learning::{Knowledge, LightObservation};
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use, power_heuristic};
 use crate::scene::{BsdfValues, SurfaceSamples};
 use crate::spectrum::{Colour, SpectrumArithmetic};
@@ -35,9 +35,11 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     expected: &[ExpectedCount],
     sampler: &mut Sampler,
     knowledge: Option<&Knowledge>,
+    mut looks: Option<&mut Vec<LightObservation>>,
     shadow: &mut ShadowRays<C>,
 ) {
     let (samples, depth) = (engine.settings.samples, vertices.depth);
+    let chooses = engine.light_choice.depends_on_surface();
     shadow.restart(vertices.len() * samples.emitters as usize);
     let mut numbers = [[0.0; CHUNK]; 3];
     let mut positions = VectorLanes::default();
@@ -58,7 +60,15 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
         }
         sampler.fill(&points, chunk.len(), Use::Light(depth), numbers.each_mut());
         positions.load(vertices.position.slices(chunk.clone()));
-        lights.draw(engine, paths, vertices, chunk.clone(), &positions, &numbers);
+        lights.draw(
+            engine,
+            paths,
+            vertices,
+            chunk.clone(),
+            &positions,
+            &numbers,
+            knowledge,
+        );
         normals.load(vertices.normal.slices(chunk.clone()));
         V::Scattering::evaluate(
             &vertices.bsdf[chunk.clone()],
@@ -79,6 +89,7 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
         let expected = &expected[chunk.clone()];
         rays.weigh(&lights, &bsdfs.pdf, expected, samples);
 
+        let chunk_len = chunk.len();
         let mut kept = KeptLanes::none();
         let mut contributions = [C::Spectrum::ZERO; CHUNK];
         for (lane, i) in chunk.enumerate() {
@@ -94,6 +105,25 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
             );
         }
         rays.append(&kept, shadow);
+        if let Some(looks) = looks.as_deref_mut().filter(|_| chooses) {
+            let first = looks.len();
+            for (lane, contribution) in contributions[..chunk_len].iter().enumerate() {
+                let i = start + lane;
+                let reflected = vertices.throughput[i] * vertices.bsdf[i].albedo();
+                let value = contribution.mean() / reflected.mean();
+                let is_drawn = lights.probability[lane] > 0.0;
+                looks.push(LightObservation {
+                    address: vertices.address[i],
+                    group: lights.group[lane],
+                    guessed: lights.guessed[lane],
+                    chosen: lights.of_group[lane],
+                    // What is no number is not observed.
+                    value: if is_drawn { value } else { f32::NAN },
+                });
+            }
+            let looks = kept.iter().map(|lane| (first + lane) as u32);
+            shadow.look.extend(looks);
+        }
         if !vertices.segment.is_empty() {
             let segments = kept.iter().map(|lane| vertices.segment[start + lane]);
             shadow.segment.extend(segments);
@@ -213,13 +243,20 @@ impl ShadowChunk {
 pub(super) fn add_unoccluded<C: Colour>(
     shadow: &ShadowRays<C>,
     paths: &mut CameraPaths<C>,
-    generation: Option<&mut Generation>,
+    lineage: Option<&mut Lineage>,
 ) {
-    if let Some(generation) = generation {
-        for (i, &segment) in shadow.segment.iter().enumerate() {
-            generation.count_shadow_ray(segment as usize);
-            if !shadow.rays.occluded(i) {
-                generation.add(segment as usize, shadow.contribution[i]);
+    if let Some(lineage) = lineage {
+        for (i, &look) in shadow.look.iter().enumerate() {
+            if shadow.rays.occluded(i) {
+                lineage.observed.lights[look as usize].value = 0.0;
+            }
+        }
+        if let Some(generation) = lineage.youngest() {
+            for (i, &segment) in shadow.segment.iter().enumerate() {
+                generation.count_shadow_ray(segment as usize);
+                if !shadow.rays.occluded(i) {
+                    generation.add(segment as usize, shadow.contribution[i]);
+                }
             }
         }
     }

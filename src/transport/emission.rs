@@ -7,11 +7,13 @@ use multiversion::multiversion;
 
 use super::batch::{CameraPaths, Segments, Vertices};
 use super::engine::Engine;
+use super::light_chunk::group_weights;
 use super::lineage::Generation;
 use super::settings::DirectLight;
 use super::surface::SurfaceChunk;
 use super::variant::{Arrivals, Scattering, Variant};
 use crate::lanes::{CHUNK, VectorLanes};
+use crate::learning::Knowledge;
 use crate::room::make_room;
 use crate::sampling::{Sampler, SolidAnglePdf, power_heuristic};
 use crate::scene::{Emitter, EmitterId};
@@ -33,6 +35,7 @@ pub(super) fn arrive<C: Colour, V: Variant>(
     sampler: &mut Sampler,
     depth: u32,
     mut generation: Option<&mut Generation>,
+    knowledge: Option<&Knowledge>,
 ) {
     vertices.restart(depth, segments.len());
     let max_depth = engine.settings.max_depth;
@@ -63,6 +66,7 @@ pub(super) fn arrive<C: Colour, V: Variant>(
             chunk.clone(),
             hides_surroundings,
             generation.as_deref_mut(),
+            knowledge,
         );
         if !scatters {
             continue;
@@ -118,6 +122,7 @@ fn add_emission<C: Colour>(
     chunk: Range<usize>,
     hides_surroundings: bool,
     mut generation: Option<&mut Generation>,
+    knowledge: Option<&Knowledge>,
 ) {
     let wavelengths = &paths.wavelengths;
     let radiances = &mut paths.radiance;
@@ -135,7 +140,7 @@ fn add_emission<C: Colour>(
                     let light = &engine.scene.emitters[emitter];
                     let direction = Vec3::from(segments.rays.direction(i));
                     let light_pdf = light.surrounding_pdf(direction);
-                    let weight = engine.mis_weight(segments, i, emitter, light_pdf);
+                    let weight = engine.mis_weight(segments, i, emitter, light_pdf, knowledge);
                     let wavelengths = &wavelengths[path];
                     let radiance = light.surrounding_radiance::<C>(direction, wavelengths) * weight;
                     add(i, path, segments.throughput[i] * radiance);
@@ -153,7 +158,7 @@ fn add_emission<C: Colour>(
                     if !radiance.is_black() {
                         let origin = Vec3::from(segments.rays.origin(i));
                         let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
-                        let weight = engine.mis_weight(segments, i, emitter, light_pdf);
+                        let weight = engine.mis_weight(segments, i, emitter, light_pdf, knowledge);
                         add(i, path, segments.throughput[i] * (radiance * weight));
                     }
                 }
@@ -204,13 +209,18 @@ impl Engine {
         i: usize,
         emitter: usize,
         light_pdf: SolidAnglePdf,
+        knowledge: Option<&Knowledge>,
     ) -> f32 {
         let direction_pdf = segments.direction_pdf[i];
         if self.settings.direct_light == DirectLight::Off || direction_pdf.0 == f32::INFINITY {
             return 1.0;
         }
         let chosen_with = match segments.origins.get(i) {
-            Some(receiver) => self.light_choice.probability(receiver, emitter),
+            Some(origin) => {
+                let weights = group_weights(knowledge, origin.insight);
+                self.light_choice
+                    .probability(&origin.receiver, weights, emitter)
+            }
             None => 1.0,
         };
         power_heuristic(

@@ -9,7 +9,8 @@ use super::engine::Engine;
 use super::offset::leave_surface;
 use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, VectorLanes};
-use crate::scene::{Emitter, LightSample, Parallelogram};
+use crate::learning::Knowledge;
+use crate::scene::{Emitter, GroupWeights, LightSample, Parallelogram};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Light drawn for a chunk of vertices, one lane each.
@@ -20,6 +21,12 @@ pub(super) struct LightChunk<C: Colour> {
     emitter: [u32; CHUNK],
     /// The probability of that choice; 0 where no light can arrive.
     pub probability: [f32; CHUNK],
+    /// To which group it belongs.
+    pub group: [u8; CHUNK],
+    /// The probability of that by what is guessed alone.
+    pub guessed: [f32; CHUNK],
+    /// That with which it was chosen.
+    pub of_group: [f32; CHUNK],
     lamps: LampLanes,
     /// Unit direction from the vertex to the light, in world space.
     pub direction: VectorLanes<CHUNK>,
@@ -31,6 +38,15 @@ pub(super) struct LightChunk<C: Colour> {
     pub pdf: [f32; CHUNK],
     /// Radiance over density, or what stands for it with a light that is a point.
     pub weight: [C::Spectrum; CHUNK],
+}
+
+/// What groups of lights are chosen by at a place with that insight.
+#[inline(always)]
+pub(super) fn group_weights(knowledge: Option<&Knowledge>, insight: u32) -> &GroupWeights {
+    match knowledge {
+        Some(knowledge) => &knowledge.insight(insight).lights,
+        None => &GroupWeights::EQUAL,
+    }
 }
 
 /// No emitter.
@@ -78,6 +94,9 @@ impl<C: Colour> LightChunk<C> {
         Self {
             emitter: [0; CHUNK],
             probability: [1.0; CHUNK],
+            group: [0; CHUNK],
+            guessed: [1.0; CHUNK],
+            of_group: [1.0; CHUNK],
             lamps: LampLanes::new(),
             direction: VectorLanes::default(),
             distance: [0.0; CHUNK],
@@ -98,10 +117,11 @@ impl<C: Colour> LightChunk<C> {
         chunk: Range<usize>,
         positions: &VectorLanes<CHUNK>,
         numbers: &[[f32; CHUNK]; 3],
+        knowledge: Option<&Knowledge>,
     ) {
         let emitters = &engine.scene.emitters;
         let [choice, u, v] = numbers;
-        self.choose(engine, vertices, chunk.clone(), choice);
+        self.choose(engine, vertices, chunk.clone(), choice, knowledge);
         // With one lamp, what was chosen is what is there.
         if self.emitter != self.lamps.emitter {
             self.fetch_lamps(engine);
@@ -139,6 +159,7 @@ impl<C: Colour> LightChunk<C> {
         vertices: &Vertices<C, V>,
         chunk: Range<usize>,
         numbers: &[f32; CHUNK],
+        knowledge: Option<&Knowledge>,
     ) {
         if let Some(only) = engine.light_choice.only() {
             self.emitter = [only as u32; CHUNK];
@@ -150,13 +171,21 @@ impl<C: Colour> LightChunk<C> {
                 self.probability[lane] = 0.0;
                 continue;
             }
+            let weights = match knowledge {
+                Some(_) => group_weights(knowledge, vertices.insight[i]),
+                None => &GroupWeights::EQUAL,
+            };
+            let receiver = vertices.receiver(i);
             match engine
                 .light_choice
-                .choose(&vertices.receiver(i), numbers[lane])
+                .choose(&receiver, weights, numbers[lane])
             {
                 Some(chosen) => {
                     self.emitter[lane] = chosen.emitter as u32;
                     self.probability[lane] = chosen.probability;
+                    self.group[lane] = chosen.group;
+                    self.guessed[lane] = chosen.guessed;
+                    self.of_group[lane] = chosen.of_group;
                 }
                 None => self.probability[lane] = 0.0,
             }

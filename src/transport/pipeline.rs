@@ -174,6 +174,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 sampler,
                 depth,
                 job.learns.then(|| self.lineage.youngest()).flatten(),
+                guide,
             );
             if depth == 0 && job.learns && sampler.has_sequences() {
                 self.lineage.set_seen_aside();
@@ -206,6 +207,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                     self.decision.offspring.expected_counts(),
                     sampler,
                     guide,
+                    job.learns.then_some(&mut self.lineage.observed.lights),
                     &mut self.shadow,
                 );
                 stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
@@ -217,7 +219,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 direct::add_unoccluded(
                     &self.shadow,
                     &mut self.paths,
-                    job.learns.then(|| self.lineage.youngest()).flatten(),
+                    job.learns.then_some(&mut self.lineage),
                 );
                 stopwatch.lap(Stage::Direct, &mut self.statistics.stages);
             }

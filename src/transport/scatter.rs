@@ -147,8 +147,8 @@ pub(super) fn scatter<C: Colour, V: Variant>(
             segments.refraction.extend(refraction);
         }
         if light_is_chosen {
-            let receivers = lanes.map(|lane| vertices.receiver(parent(lane)));
-            segments.origins.extend(receivers);
+            let origins = lanes.map(|lane| vertices.origin(parent(lane)));
+            segments.origins.extend(origins);
         }
     }
     let count = segments.len();

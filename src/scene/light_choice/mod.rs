@@ -7,11 +7,13 @@ mod bounds;
 mod branch;
 mod cone;
 mod emitters;
+mod groups;
 mod importance;
 mod tree;
 
 pub use bounds::LightBounds;
 pub use cone::Cone;
+pub use groups::{GROUPS, GroupWeights};
 
 use glam::Vec3;
 
@@ -19,7 +21,7 @@ use super::Shape;
 use super::emitters::Emitter;
 use branch::PlacedLight;
 use emitters::Place;
-use tree::LightTree;
+use groups::LightGroups;
 
 /// A way to choose one of a scene's emitters.
 #[derive(Clone, Debug)]
@@ -31,14 +33,7 @@ enum Kind {
     None,
     /// There is no choice.
     Only(usize),
-    Several {
-        /// Emitters that are infinitely far away.
-        distant: Vec<usize>,
-        /// All others.
-        tree: Option<LightTree>,
-        /// The probability of each that is infinitely far away, and of the tree.
-        each: f32,
-    },
+    Several(LightGroups),
 }
 
 /// A surface to which light is to be found.
@@ -61,6 +56,12 @@ pub struct ChosenLight {
     pub probability: f32,
     /// What is left of the uniform number, itself uniform in [0, 1).
     pub remainder: f32,
+    /// The group to which it belongs, and with which probability that would have been chosen by what is guessed alone.
+    pub group: u8,
+    /// See `group`.
+    pub guessed: f32,
+    /// The probability with which the group was chosen.
+    pub of_group: f32,
 }
 
 impl LightChoice {
@@ -92,13 +93,7 @@ impl LightChoice {
                     let power = (light.bounds.power / greatest).max(LEAST_POWER);
                     light.bounds.power = if power.is_nan() { 1.0 } else { power };
                 }
-                let tree = LightTree::new(placed);
-                let choices = distant.len() + usize::from(tree.is_some());
-                Kind::Several {
-                    distant,
-                    tree,
-                    each: 1.0 / choices as f32,
-                }
+                Kind::Several(LightGroups::new(distant, placed))
             }
         })
     }
@@ -108,71 +103,46 @@ impl LightChoice {
     pub fn only(&self) -> Option<usize> {
         match self.0 {
             Kind::Only(emitter) => Some(emitter),
-            Kind::None | Kind::Several { .. } => None,
+            Kind::None | Kind::Several(_) => None,
         }
     }
 
     /// Whether the choice depends on the surface: otherwise there is at most one light.
     #[inline]
     pub fn depends_on_surface(&self) -> bool {
-        matches!(self.0, Kind::Several { .. })
+        matches!(self.0, Kind::Several(_))
     }
 
-    /// Chooses an emitter for a surface from the uniform number `u` in [0, 1). `None` where no light can arrive.
+    /// Chooses an emitter for a surface from the uniform number `u` in [0, 1), where what is guessed of groups is to be multiplied by `weights`. `None` where
+    /// no light can arrive.
     #[inline(always)]
-    pub fn choose(&self, receiver: &Receiver, u: f32) -> Option<ChosenLight> {
+    pub fn choose(
+        &self,
+        receiver: &Receiver,
+        weights: &GroupWeights,
+        u: f32,
+    ) -> Option<ChosenLight> {
         match &self.0 {
             Kind::None => None,
             &Kind::Only(emitter) => Some(ChosenLight {
                 emitter,
                 probability: 1.0,
                 remainder: u,
+                group: 0,
+                guessed: 1.0,
+                of_group: 1.0,
             }),
-            Kind::Several {
-                distant,
-                tree,
-                each,
-            } => {
-                let choices = distant.len() + usize::from(tree.is_some());
-                let scaled = u * choices as f32;
-                let index = (scaled as usize).min(choices - 1);
-                let remainder = (scaled - index as f32).min(BELOW_ONE);
-                match (distant.get(index), tree) {
-                    (Some(&emitter), _) => Some(ChosenLight {
-                        emitter,
-                        probability: *each,
-                        remainder,
-                    }),
-                    (None, Some(tree)) => {
-                        let chosen = tree.choose(receiver, remainder)?;
-                        Some(ChosenLight {
-                            probability: chosen.probability * each,
-                            ..chosen
-                        })
-                    }
-                    (None, None) => None,
-                }
-            }
+            Kind::Several(groups) => groups.choose(receiver, weights, u),
         }
     }
 
     /// The probability with which [`Self::choose`] chooses `emitter` for the same surface.
     #[inline]
-    pub fn probability(&self, receiver: &Receiver, emitter: usize) -> f32 {
+    pub fn probability(&self, receiver: &Receiver, weights: &GroupWeights, emitter: usize) -> f32 {
         match &self.0 {
             Kind::None => 0.0,
             &Kind::Only(only) => f32::from(u8::from(emitter == only)),
-            Kind::Several {
-                distant,
-                tree,
-                each,
-            } => {
-                if distant.contains(&emitter) {
-                    return *each;
-                }
-                let tree = tree.as_ref();
-                tree.map_or(0.0, |tree| tree.probability(receiver, emitter) * each)
-            }
+            Kind::Several(groups) => groups.probability(receiver, weights, emitter),
         }
     }
 }

@@ -5,10 +5,10 @@
 
 use super::branch::{Branch, PlacedLight};
 use super::importance::LightLanes;
-use super::{BELOW_ONE, ChosenLight, Receiver};
+use super::{BELOW_ONE, Receiver};
 
 /// The most children of a node.
-const WIDTH: usize = 8;
+pub const WIDTH: usize = 8;
 
 /// The tree of the lights that have a place.
 #[derive(Clone, Debug)]
@@ -37,8 +37,8 @@ enum Child {
 const LEAST_SHARE: f32 = 1e-3;
 
 impl LightTree {
-    /// The tree of `lights`; `None` if there are none.
-    pub fn new(mut lights: Vec<PlacedLight>) -> Option<Self> {
+    /// The tree of `lights`, whose root has at most `most` children; `None` if there are none.
+    pub fn new(mut lights: Vec<PlacedLight>, most: usize) -> Option<Self> {
         let emitters = lights
             .iter()
             .map(|light| light.emitter as usize + 1)
@@ -47,18 +47,18 @@ impl LightTree {
             nodes: Vec::new(),
             ways: vec![None; emitters],
         };
-        tree.add(Branch::grow(&mut lights, 0), &mut Vec::new());
+        tree.add(Branch::grow(&mut lights, 0), most, &mut Vec::new());
         Some(tree)
     }
 
     /// Adds the nodes of a branch at the end of `way`; returns the number of the first of them.
-    fn add(&mut self, branch: Branch, way: &mut Vec<u8>) -> u32 {
+    fn add(&mut self, branch: Branch, most: usize, way: &mut Vec<u8>) -> u32 {
         let own = self.nodes.len();
         self.nodes.push(Node {
             lights: LightLanes::none(),
             children: [Child::None; WIDTH],
         });
-        for (lane, branch) in branch.open(WIDTH).into_iter().enumerate() {
+        for (lane, branch) in branch.open(most).into_iter().enumerate() {
             self.nodes[own].lights.put(lane, branch.bounds());
             way.push(lane as u8);
             self.nodes[own].children[lane] = match branch {
@@ -66,33 +66,28 @@ impl LightTree {
                     self.ways[light.emitter as usize] = Some(way.clone());
                     Child::Emitter(light.emitter)
                 }
-                Branch::Inner(..) => Child::Node(self.add(branch, way)),
+                Branch::Inner(..) => Child::Node(self.add(branch, WIDTH, way)),
             };
             way.pop();
         }
         own as u32
     }
 
-    /// Chooses a light for a surface from `u` in [0, 1). `None` where no light can arrive.
+    /// The probabilities of the children of the root; `None` where no light can arrive.
     #[inline(always)]
-    pub fn choose(&self, receiver: &Receiver, mut u: f32) -> Option<ChosenLight> {
+    pub fn root_shares(&self, receiver: &Receiver) -> Option<[f32; WIDTH]> {
+        self.nodes[0].shares(receiver)
+    }
+
+    /// Chooses a light below the root's child in a `lane` for a surface from `u` in [0, 1). `None` where none of these can arrive.
+    #[inline(always)]
+    pub fn choose_below(&self, mut lane: usize, receiver: &Receiver, mut u: f32) -> Option<Leaf> {
         let (mut node, mut probability) = (&self.nodes[0], 1.0);
         loop {
-            let shares = node.shares(receiver)?;
-            let (mut lane, mut before, mut end) = (0, 0.0, 0.0);
-            for (child, &share) in shares.iter().enumerate() {
-                // Of what rounding leaves beyond all shares, the last that has one gets the rest.
-                let is_next = (share > 0.0) & (u >= end);
-                lane = if is_next { child } else { lane };
-                before = if is_next { end } else { before };
-                end += share;
-            }
-            probability *= shares[lane];
-            u = ((u - before) / shares[lane]).min(BELOW_ONE);
             match node.children[lane] {
                 Child::Node(next) => node = &self.nodes[next as usize],
                 Child::Emitter(emitter) => {
-                    return Some(ChosenLight {
+                    return Some(Leaf {
                         emitter: emitter as usize,
                         probability,
                         remainder: u,
@@ -100,27 +95,64 @@ impl LightTree {
                 }
                 Child::None => return None,
             }
+            let shares = node.shares(receiver)?;
+            (lane, u) = pick(&shares, u);
+            probability *= shares[lane];
         }
     }
 
-    /// The probability with which [`Self::choose`] chooses an emitter.
+    /// The probability with which an emitter is chosen where the children of the root have these `shares`.
     #[inline]
-    pub fn probability(&self, receiver: &Receiver, emitter: usize) -> f32 {
+    pub fn probability(
+        &self,
+        root_shares: &[f32; WIDTH],
+        receiver: &Receiver,
+        emitter: usize,
+    ) -> f32 {
         let Some(Some(way)) = self.ways.get(emitter) else {
             return 0.0;
         };
-        let (mut node, mut probability) = (&self.nodes[0], 1.0);
-        for &lane in way {
+        let [first, rest @ ..] = &way[..] else {
+            return 0.0;
+        };
+        let mut lane = usize::from(*first);
+        let (mut node, mut probability) = (&self.nodes[0], root_shares[lane]);
+        for &next_lane in rest {
+            if let Child::Node(next) = node.children[lane] {
+                node = &self.nodes[next as usize];
+            }
             let Some(shares) = node.shares(receiver) else {
                 return 0.0;
             };
-            probability *= shares[usize::from(lane)];
-            if let Child::Node(next) = node.children[usize::from(lane)] {
-                node = &self.nodes[next as usize];
-            }
+            lane = usize::from(next_lane);
+            probability *= shares[lane];
         }
         probability
     }
+}
+
+/// A light chosen in a tree.
+pub struct Leaf {
+    /// Its number among the scene's emitters.
+    pub emitter: usize,
+    /// The probability of this choice where the child of the root was given.
+    pub probability: f32,
+    /// What is left of the uniform number, itself uniform in [0, 1).
+    pub remainder: f32,
+}
+
+/// The lane that `u`, uniform in [0, 1), picks with the probabilities `shares`, of which at least one is positive, and what is left of it.
+#[inline(always)]
+pub fn pick(shares: &[f32; WIDTH], u: f32) -> (usize, f32) {
+    let (mut lane, mut before, mut end) = (0, 0.0, 0.0);
+    for (child, &share) in shares.iter().enumerate() {
+        // Of what rounding leaves beyond all shares, the last that has one gets the rest.
+        let is_next = (share > 0.0) & (u >= end);
+        lane = if is_next { child } else { lane };
+        before = if is_next { end } else { before };
+        end += share;
+    }
+    (lane, ((u - before) / shares[lane]).min(BELOW_ONE))
 }
 
 impl Node {

@@ -1,0 +1,140 @@
+//! Groups of lights, of which each is chosen by what is guessed of it and by what was learned where the surface is.
+
+use serde::{Deserialize, Serialize};
+
+use super::branch::PlacedLight;
+use super::tree::{Leaf, LightTree, WIDTH, pick};
+use super::{BELOW_ONE, ChosenLight, Receiver};
+
+/// How many groups there are at the most: the children of the tree's root, and what is infinitely far away.
+pub const GROUPS: usize = WIDTH;
+
+/// The most groups of lights that are infinitely far away.
+const DISTANT_GROUPS: usize = 4;
+
+/// By how much the light of each group differs from what is guessed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroupWeights(pub [f32; GROUPS]);
+
+impl GroupWeights {
+    /// Nothing was learned.
+    pub const EQUAL: Self = Self([1.0; GROUPS]);
+}
+
+/// All lights, in groups.
+#[derive(Clone, Debug)]
+pub struct LightGroups {
+    tree: Option<LightTree>,
+    /// Those that are infinitely far away: one group each, the last ones the last group together.
+    distant: Vec<usize>,
+    /// The first group of those.
+    first_distant: usize,
+    /// The probability of each of those, and of the tree, by what is guessed alone.
+    each: f32,
+    /// That of the groups of those.
+    of_distant: [f32; GROUPS],
+}
+
+/// What groups are chosen with.
+struct Shares {
+    guessed: [f32; GROUPS],
+    chosen: [f32; GROUPS],
+}
+
+impl LightGroups {
+    pub fn new(distant: Vec<usize>, placed: Vec<PlacedLight>) -> Self {
+        let first_distant = GROUPS - distant.len().min(DISTANT_GROUPS);
+        let tree = LightTree::new(placed, first_distant);
+        let choices = distant.len() + usize::from(tree.is_some());
+        let each = 1.0 / choices as f32;
+        let mut of_distant = [0.0; GROUPS];
+        for index in 0..distant.len() {
+            of_distant[(first_distant + index).min(GROUPS - 1)] += each;
+        }
+        Self {
+            tree,
+            distant,
+            first_distant,
+            each,
+            of_distant,
+        }
+    }
+
+    #[inline(always)]
+    fn shares(&self, receiver: &Receiver, weights: &GroupWeights) -> Option<Shares> {
+        let mut guessed = self.of_distant;
+        if let Some(tree) = &self.tree
+            && let Some(shares) = tree.root_shares(receiver)
+        {
+            for (guessed, share) in guessed.iter_mut().zip(shares) {
+                *guessed += self.each * share;
+            }
+        }
+        let mut chosen = guessed;
+        for (share, weight) in chosen.iter_mut().zip(weights.0) {
+            *share *= weight;
+        }
+        let sum: f32 = chosen.iter().sum();
+        let per_sum = 1.0 / sum;
+        for share in &mut chosen {
+            *share *= per_sum;
+        }
+        (sum > 0.0).then_some(Shares { guessed, chosen })
+    }
+
+    #[inline(always)]
+    pub fn choose(
+        &self,
+        receiver: &Receiver,
+        weights: &GroupWeights,
+        u: f32,
+    ) -> Option<ChosenLight> {
+        let shares = self.shares(receiver, weights)?;
+        let (group, u) = pick(&shares.chosen, u);
+        let of_group = shares.chosen[group];
+        let leaf = if group >= self.first_distant {
+            let lights = self.distant_group(group);
+            let scaled = u * lights.len() as f32;
+            let index = (scaled as usize).min(lights.len() - 1);
+            Leaf {
+                emitter: lights[index],
+                probability: 1.0 / lights.len() as f32,
+                remainder: (scaled - index as f32).min(BELOW_ONE),
+            }
+        } else {
+            self.tree.as_ref()?.choose_below(group, receiver, u)?
+        };
+        Some(ChosenLight {
+            emitter: leaf.emitter,
+            probability: of_group * leaf.probability,
+            remainder: leaf.remainder,
+            group: group as u8,
+            guessed: shares.guessed[group],
+            of_group,
+        })
+    }
+
+    fn distant_group(&self, group: usize) -> &[usize] {
+        let index = group - self.first_distant;
+        if group == GROUPS - 1 {
+            &self.distant[index..]
+        } else {
+            &self.distant[index..=index]
+        }
+    }
+
+    #[inline]
+    pub fn probability(&self, receiver: &Receiver, weights: &GroupWeights, emitter: usize) -> f32 {
+        let Some(shares) = self.shares(receiver, weights) else {
+            return 0.0;
+        };
+        if let Some(index) = self.distant.iter().position(|&light| light == emitter) {
+            let group = (self.first_distant + index).min(GROUPS - 1);
+            return shares.chosen[group] / self.distant_group(group).len() as f32;
+        }
+        let Some(tree) = &self.tree else {
+            return 0.0;
+        };
+        tree.probability(&shares.chosen, receiver, emitter)
+    }
+}
