@@ -87,8 +87,8 @@ const UPWARDS: Receiver = Receiver {
 fn without_a_choice_there_is_nothing_to_choose() {
     let none = choice(&scene(""));
     assert!(!none.depends_on_surface());
-    assert_eq!(none.choose(&UPWARDS, 0.25), None);
-    assert_eq!(none.probability(&UPWARDS, 0), 0.0);
+    assert_eq!(none.choose(&UPWARDS, &GroupWeights::EQUAL, 0.25), None);
+    assert_eq!(none.probability(&UPWARDS, &GroupWeights::EQUAL, 0), 0.0);
     let black = r#"<emitter type="point"><rgb name="intensity" value="0"/></emitter>"#;
     for only in [r#"<emitter type="constant"/>"#, r#"<emitter type="spot"/>"#] {
         let only = choice(&scene(&format!("{black}{only}")));
@@ -97,10 +97,16 @@ fn without_a_choice_there_is_nothing_to_choose() {
             emitter: 1,
             probability: 1.0,
             remainder: 0.25,
+            group: 0,
+            guessed: 1.0,
+            of_group: 1.0,
         };
-        assert_eq!(only.choose(&UPWARDS, 0.25), Some(chosen));
-        assert_eq!(only.probability(&UPWARDS, 0), 0.0);
-        assert_eq!(only.probability(&UPWARDS, 1), 1.0);
+        assert_eq!(
+            only.choose(&UPWARDS, &GroupWeights::EQUAL, 0.25),
+            Some(chosen)
+        );
+        assert_eq!(only.probability(&UPWARDS, &GroupWeights::EQUAL, 0), 0.0);
+        assert_eq!(only.probability(&UPWARDS, &GroupWeights::EQUAL, 1), 1.0);
     }
 }
 
@@ -115,7 +121,8 @@ fn lights_from_afar_stand_beside_the_tree() {
         position: Vec3::X,
         ..UPWARDS
     };
-    let probabilities = [0, 1, 2, 3, 4].map(|i| choice.probability(&receiver, i));
+    let probabilities =
+        [0, 1, 2, 3, 4].map(|i| choice.probability(&receiver, &GroupWeights::EQUAL, i));
     assert_eq!((probabilities[1], probabilities[3]), (1.0 / 3.0, 1.0 / 3.0));
     for near in [0, 2, 4] {
         assert!(
@@ -136,21 +143,22 @@ fn choices_follow_their_probabilities() {
         let mut random = random(99);
         for _ in 0..20 {
             let receiver = surface(&mut random);
+            let weights = GroupWeights([(); GROUPS].map(|()| 0.125 + 8.0 * random.uniform()));
             let mut counts = vec![0.0; count];
             let mut nothing = 0.0;
             for _ in 0..DRAWS {
                 let u = random.uniform();
-                let Some(chosen) = choice.choose(&receiver, u) else {
+                let Some(chosen) = choice.choose(&receiver, &weights, u) else {
                     nothing += 1.0;
                     continue;
                 };
                 counts[chosen.emitter] += 1.0;
-                let probability = choice.probability(&receiver, chosen.emitter);
+                let probability = choice.probability(&receiver, &weights, chosen.emitter);
                 assert_eq!(chosen.probability, probability);
                 assert!((0.0..1.0).contains(&chosen.remainder));
             }
             let probabilities: Vec<f64> = (0..count)
-                .map(|emitter| f64::from(choice.probability(&receiver, emitter)))
+                .map(|emitter| f64::from(choice.probability(&receiver, &weights, emitter)))
                 .collect();
             let total: f64 = probabilities.iter().sum();
             assert!(total < 1.0 + 1e-5, "{total}");
@@ -187,7 +195,8 @@ fn lights_below_the_surface_are_left_out() {
     };
     let scene = scene(&[3.0, -3.0, 5.0, -4.0].map(point).concat());
     let choice = choice(&scene);
-    let probabilities = |receiver| [0, 1, 2, 3].map(|i| choice.probability(&receiver, i));
+    let probabilities =
+        |receiver| [0, 1, 2, 3].map(|i| choice.probability(&receiver, &GroupWeights::EQUAL, i));
     let [first, below, second, further_below] = probabilities(UPWARDS);
     assert_eq!((below, further_below), (0.0, 0.0));
     assert!(first > second && (first + second - 1.0).abs() < 1e-6);
@@ -217,7 +226,9 @@ fn probabilities_add_up() {
             scatters_below: true,
             ..surface(&mut random)
         };
-        let total: f32 = (0..50).map(|i| choice.probability(&receiver, i)).sum();
+        let total: f32 = (0..50)
+            .map(|i| choice.probability(&receiver, &GroupWeights::EQUAL, i))
+            .sum();
         assert!((total - 1.0).abs() < 1e-4, "{total}");
     }
 }
@@ -236,7 +247,7 @@ proptest! {
                 let u = random.uniform_2d();
                 let sample = emitter.sample::<Rgb>(&scene.shapes, receiver.position, &(), u);
                 if sample.is_some_and(|sample| sample.weight.0[0] > 0.0 && counts(&receiver, sample.direction)) {
-                    let probability = choice.probability(&receiver, index);
+                    let probability = choice.probability(&receiver, &GroupWeights::EQUAL, index);
                     prop_assert!(probability > 0.0, "{:?}", scene.emitters[index]);
                 }
             }
@@ -268,7 +279,7 @@ fn the_right_lamps_are_chosen() {
             })
         };
         let v = random.uniform();
-        if let Some(chosen) = choice.choose(&receiver, v) {
+        if let Some(chosen) = choice.choose(&receiver, &GroupWeights::EQUAL, v) {
             let value = arrives(chosen.emitter) / f64::from(chosen.probability);
             mean += value / DRAWS as f64;
             squares += value * value / DRAWS as f64;
