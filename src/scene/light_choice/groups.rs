@@ -98,15 +98,16 @@ impl LightGroups {
             let index = (scaled as usize).min(lights.len() - 1);
             Leaf {
                 emitter: lights[index],
-                probability: 1.0 / lights.len() as f32,
+                probability: of_group / lights.len() as f32,
                 remainder: (scaled - index as f32).min(BELOW_ONE),
             }
         } else {
-            self.tree.as_ref()?.choose_below(group, receiver, u)?
+            let tree = self.tree.as_ref()?;
+            tree.choose_below(group, of_group, receiver, u)?
         };
         Some(ChosenLight {
             emitter: leaf.emitter,
-            probability: of_group * leaf.probability,
+            probability: leaf.probability,
             remainder: leaf.remainder,
             group: group as u8,
             guessed: shares.guessed[group],

@@ -79,10 +79,17 @@ impl LightTree {
         self.nodes[0].shares(receiver)
     }
 
-    /// Chooses a light below the root's child in a `lane` for a surface from `u` in [0, 1). `None` where none of these can arrive.
+    /// Chooses a light below the root's child in a `lane`, which was chosen with that `probability`, for a surface from `u` in [0, 1). `None` where none of
+    /// these can arrive.
     #[inline(always)]
-    pub fn choose_below(&self, mut lane: usize, receiver: &Receiver, mut u: f32) -> Option<Leaf> {
-        let (mut node, mut probability) = (&self.nodes[0], 1.0);
+    pub fn choose_below(
+        &self,
+        mut lane: usize,
+        mut probability: f32,
+        receiver: &Receiver,
+        mut u: f32,
+    ) -> Option<Leaf> {
+        let mut node = &self.nodes[0];
         loop {
             match node.children[lane] {
                 Child::Node(next) => node = &self.nodes[next as usize],
@@ -135,7 +142,7 @@ impl LightTree {
 pub struct Leaf {
     /// Its number among the scene's emitters.
     pub emitter: usize,
-    /// The probability of this choice where the child of the root was given.
+    /// The probability of this choice.
     pub probability: f32,
     /// What is left of the uniform number, itself uniform in [0, 1).
     pub remainder: f32,
