@@ -134,6 +134,52 @@ const INDIRECT: &str = r#"<scene version="3.0.0">
     </shape>
 </scene>"#;
 
+/// A floor between two lamps of the same brightness, of which a wall hides one.
+const HIDDEN: &str = r#"<scene version="3.0.0">
+    <integrator type="path"><integer name="max_depth" value="2"/></integrator>
+    <sensor type="perspective">
+        <float name="fov" value="40"/>
+        <transform name="to_world"><lookat origin="0 0 5" target="0 0 0" up="0 1 0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="16"/><rfilter type="box"/></film>
+    </sensor>
+    <shape type="rectangle"><transform name="to_world"><scale value="2"/></transform></shape>
+    <shape type="rectangle">
+        <transform name="to_world"><scale value="3"/><rotate y="1" angle="90"/><translate x="2.1"/></transform>
+    </shape>
+    <emitter type="point"><point name="position" x="-3" y="0" z="3"/></emitter>
+    <emitter type="point"><point name="position" x="3" y="0" z="2.5"/></emitter>
+</scene>"#;
+
+#[test]
+fn lamps_that_are_hidden_are_hardly_looked_at() {
+    let scene = Scene::from_xml(HIDDEN, &LoadOptions::default());
+    let scene = Arc::new(scene.expect("the scene can be loaded"));
+    let images = [true, false].map(|guiding| {
+        let settings = Settings {
+            guiding,
+            ..settings(
+                StrategyKind::Roulette,
+                SamplerKind::Independent,
+                ColourMode::Rgb,
+            )
+        };
+        replicates_in_growing_passes(&scene, settings, 0..24, 64)
+    });
+    let noise = images.each_ref().map(|images| -> f64 {
+        let blocks = images.blocks(1);
+        blocks.iter().flatten().map(|pixel| pixel.variance).sum()
+    });
+    // Chosen with probability p, the other lamp leaves a variance of (1 - p) / p: about 1 by what is guessed, a tenth and less where it is known.
+    let ratio = noise[0] / noise[1];
+    println!("{ratio:.3} of the variance");
+    assert!(ratio < 0.4, "{ratio:.3} of the variance");
+    let [guided, plain] = images.each_ref().map(|images| images.means());
+    for (guided, plain) in guided.iter().zip(&plain) {
+        let z = guided.z_of_difference(plain);
+        assert!(z.abs() < 4.0, "{guided:?} {plain:?}");
+    }
+}
+
 #[test]
 fn guided_directions_leave_less_noise() {
     let scene = Scene::from_xml(INDIRECT, &LoadOptions::default());

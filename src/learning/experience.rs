@@ -250,6 +250,7 @@ impl Experience {
 mod tests {
     use super::*;
     use crate::learning::{Bin, GuidedShare, MixedDirection, Odds};
+    use crate::scene::ChosenGroup;
     use glam::Vec3;
 
     fn tree() -> CellTree {
@@ -278,6 +279,26 @@ mod tests {
             experience.observe(&observation);
         }
         experience
+    }
+
+    /// What is no number, or infinite, is not learned from.
+    #[test]
+    fn looks_at_lights_are_kept_where_they_are_finite() {
+        let tree = tree();
+        let look = |value| LightObservation {
+            address: address(&tree, 0.2),
+            group: ChosenGroup::ONLY,
+            value,
+        };
+        let mut experience = Experience::default();
+        for value in [f32::NAN, f32::INFINITY, f32::MAX] {
+            experience.observe_light(&look(value));
+        }
+        assert_eq!(experience, Experience::default());
+        experience.observe_light(&look(2.0));
+        let mut expected = LightSums::default();
+        expected.observe(&look(2.0));
+        assert_eq!(total(&experience).lights, expected);
     }
 
     /// All sums of a list added up.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::mixture::Odds;
 use super::square_warp::Bin;
+use crate::scene::ChosenGroup;
 
 /// What one path segment brought back to the vertex that it had left.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,11 +29,7 @@ pub struct LightObservation {
     /// Where the vertex was (see [`Knowledge::address`](super::Knowledge::address)).
     pub address: u32,
     /// The group to which the light belongs.
-    pub group: u8,
-    /// The probability of the group by what is guessed alone.
-    pub guessed: f32,
-    /// That with which it was chosen.
-    pub chosen: f32,
+    pub group: ChosenGroup,
     /// What it was worth: an estimate of the light that the vertex reflects, with albedo 1.
     pub value: f32,
 }

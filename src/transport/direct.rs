@@ -22,8 +22,8 @@ const SHADOW_END: f32 = 1.0 - 1e-4;
 
 /// Draws light for every vertex and fills `shadow` with the rays that decide whether it arrives.
 ///
-/// The emitter is chosen by what it can contribute; a path's contribution is MIS-weighted against hitting the same light by chance, with as many
-/// children as are `expected` of each vertex.
+/// The emitter is chosen by what it can contribute, as far as that is guessed and, where directions are guided, known; a path's contribution is MIS-weighted
+/// against hitting the same light by chance, with as many children as are `expected` of each vertex. What was looked at is added to `looks`.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -35,11 +35,11 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     expected: &[ExpectedCount],
     sampler: &mut Sampler,
     knowledge: Option<&Knowledge>,
-    mut looks: Option<&mut Vec<LightObservation>>,
+    looks: Option<&mut Vec<LightObservation>>,
     shadow: &mut ShadowRays<C>,
 ) {
     let (samples, depth) = (engine.settings.samples, vertices.depth);
-    let chooses = engine.light_choice.depends_on_surface();
+    let mut looks = looks.filter(|_| engine.light_choice.depends_on_surface());
     shadow.restart(vertices.len() * samples.emitters as usize);
     let mut numbers = [[0.0; CHUNK]; 3];
     let mut positions = VectorLanes::default();
@@ -89,7 +89,6 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
         let expected = &expected[chunk.clone()];
         rays.weigh(&lights, &bsdfs.pdf, expected, samples);
 
-        let chunk_len = chunk.len();
         let mut kept = KeptLanes::none();
         let mut contributions = [C::Spectrum::ZERO; CHUNK];
         for (lane, i) in chunk.enumerate() {
@@ -105,24 +104,10 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
             );
         }
         rays.append(&kept, shadow);
-        if let Some(looks) = looks.as_deref_mut().filter(|_| chooses) {
-            let first = looks.len();
-            for (lane, contribution) in contributions[..chunk_len].iter().enumerate() {
-                let i = start + lane;
-                let reflected = vertices.throughput[i] * vertices.bsdf[i].albedo();
-                let value = contribution.mean() / reflected.mean();
-                let is_drawn = lights.probability[lane] > 0.0;
-                looks.push(LightObservation {
-                    address: vertices.address[i],
-                    group: lights.group[lane],
-                    guessed: lights.guessed[lane],
-                    chosen: lights.of_group[lane],
-                    // What is no number is not observed.
-                    value: if is_drawn { value } else { f32::NAN },
-                });
-            }
-            let looks = kept.iter().map(|lane| (first + lane) as u32);
-            shadow.look.extend(looks);
+        if let Some(looks) = looks.as_deref_mut() {
+            let contributions = &contributions[..expected.len()];
+            let numbers = note_looks(vertices, start, &lights, contributions, looks);
+            shadow.look.extend(kept.iter().map(|lane| numbers[lane]));
         }
         if !vertices.segment.is_empty() {
             let segments = kept.iter().map(|lane| vertices.segment[start + lane]);
@@ -237,6 +222,32 @@ impl ShadowChunk {
         rays.tnear[place.clone()].fill(0.0);
         copy_kept(&mut rays.tfar[place], &self.far, kept);
     }
+}
+
+/// Adds what each light drawn for the vertices from number `start` on contributes, if nothing is in its way, to the `looks`; returns the numbers of these, lane by
+/// lane, which mean nothing where no light was drawn.
+#[inline(always)]
+fn note_looks<C: Colour, V: Variant>(
+    vertices: &Vertices<C, V>,
+    start: usize,
+    lights: &LightChunk<C>,
+    contributions: &[C::Spectrum],
+    looks: &mut Vec<LightObservation>,
+) -> [u32; CHUNK] {
+    let mut numbers = [0; CHUNK];
+    for (lane, contribution) in contributions.iter().enumerate() {
+        if lights.probability[lane] > 0.0 {
+            let vertex = start + lane;
+            let reflected = vertices.throughput[vertex] * vertices.bsdf[vertex].albedo();
+            numbers[lane] = looks.len() as u32;
+            looks.push(LightObservation {
+                address: vertices.address[vertex],
+                group: lights.group[lane],
+                value: contribution.mean() / reflected.mean(),
+            });
+        }
+    }
+    numbers
 }
 
 /// Adds what the unoccluded shadow rays carry.

@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::batch::{CameraPaths, Vertices};
+use super::batch::{CameraPaths, Origin, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
 use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::learning::Knowledge;
-use crate::scene::{Emitter, GroupWeights, LightSample, Parallelogram};
+use crate::scene::{ChosenGroup, Emitter, GroupWeights, LightSample, Parallelogram};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Light drawn for a chunk of vertices, one lane each.
@@ -21,12 +21,8 @@ pub(super) struct LightChunk<C: Colour> {
     emitter: [u32; CHUNK],
     /// The probability of that choice; 0 where no light can arrive.
     pub probability: [f32; CHUNK],
-    /// To which group it belongs.
-    pub group: [u8; CHUNK],
-    /// The probability of that by what is guessed alone.
-    pub guessed: [f32; CHUNK],
-    /// That with which it was chosen.
-    pub of_group: [f32; CHUNK],
+    /// The group to which it belongs.
+    pub group: [ChosenGroup; CHUNK],
     lamps: LampLanes,
     /// Unit direction from the vertex to the light, in world space.
     pub direction: VectorLanes<CHUNK>,
@@ -40,7 +36,7 @@ pub(super) struct LightChunk<C: Colour> {
     pub weight: [C::Spectrum; CHUNK],
 }
 
-/// What groups of lights are chosen by at a place with that insight.
+/// What groups of lights are chosen by at a place with that `insight` (see [`Knowledge::insight`]).
 #[inline(always)]
 pub(super) fn group_weights(knowledge: Option<&Knowledge>, insight: u32) -> &GroupWeights {
     match knowledge {
@@ -94,9 +90,7 @@ impl<C: Colour> LightChunk<C> {
         Self {
             emitter: [0; CHUNK],
             probability: [1.0; CHUNK],
-            group: [0; CHUNK],
-            guessed: [1.0; CHUNK],
-            of_group: [1.0; CHUNK],
+            group: [ChosenGroup::ONLY; CHUNK],
             lamps: LampLanes::new(),
             direction: VectorLanes::default(),
             distance: [0.0; CHUNK],
@@ -107,7 +101,7 @@ impl<C: Colour> LightChunk<C> {
     }
 
     /// Draws light for the vertices `chunk`, whose positions are `positions`, from three uniform numbers in [0, 1) each:
-    /// one chooses the emitter, two a point of it.
+    /// one chooses the emitter, by what guiding goes by, if it does, two a point of it.
     #[inline(always)]
     pub fn draw<V: Variant>(
         &mut self,
@@ -171,21 +165,16 @@ impl<C: Colour> LightChunk<C> {
                 self.probability[lane] = 0.0;
                 continue;
             }
-            let weights = match knowledge {
-                Some(_) => group_weights(knowledge, vertices.insight[i]),
-                None => &GroupWeights::EQUAL,
-            };
-            let receiver = vertices.receiver(i);
-            match engine
+            let Origin { receiver, insight } = vertices.origin(i);
+            let weights = group_weights(knowledge, insight);
+            let chosen = engine
                 .light_choice
-                .choose(&receiver, weights, numbers[lane])
-            {
+                .choose(&receiver, weights, numbers[lane]);
+            match chosen {
                 Some(chosen) => {
                     self.emitter[lane] = chosen.emitter as u32;
                     self.probability[lane] = chosen.probability;
                     self.group[lane] = chosen.group;
-                    self.guessed[lane] = chosen.guessed;
-                    self.of_group[lane] = chosen.of_group;
                 }
                 None => self.probability[lane] = 0.0,
             }

@@ -12,13 +12,33 @@ pub const GROUPS: usize = WIDTH;
 /// The most groups of lights that are infinitely far away.
 const DISTANT_GROUPS: usize = 4;
 
-/// By how much the light of each group differs from what is guessed.
+/// By how much the light of each group differs from what is guessed: positive factors, of which only the proportions matter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroupWeights(pub [f32; GROUPS]);
 
 impl GroupWeights {
     /// Nothing was learned.
     pub const EQUAL: Self = Self([1.0; GROUPS]);
+}
+
+/// A group as it was chosen for a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChosenGroup {
+    /// Its number, below [`GROUPS`].
+    pub number: u8,
+    /// Its probability by what is guessed alone.
+    pub guessed: f32,
+    /// That with which it was chosen, positive.
+    pub chosen: f32,
+}
+
+impl ChosenGroup {
+    /// What is chosen where there is no choice.
+    pub const ONLY: Self = Self {
+        number: 0,
+        guessed: 1.0,
+        chosen: 1.0,
+    };
 }
 
 /// All lights, in groups.
@@ -35,13 +55,16 @@ pub struct LightGroups {
     of_distant: [f32; GROUPS],
 }
 
-/// What groups are chosen with.
+/// The probabilities of all groups for a surface.
 struct Shares {
+    /// By what is guessed alone; these add up to less than 1 where no light of the tree can arrive.
     guessed: [f32; GROUPS],
+    /// Those that groups are chosen with.
     chosen: [f32; GROUPS],
 }
 
 impl LightGroups {
+    /// The groups of `distant` emitters and of the `placed` ones; there is at least one.
     pub fn new(distant: Vec<usize>, placed: Vec<PlacedLight>) -> Self {
         let first_distant = GROUPS - distant.len().min(DISTANT_GROUPS);
         let tree = LightTree::new(placed, first_distant);
@@ -60,6 +83,7 @@ impl LightGroups {
         }
     }
 
+    /// The probabilities of the groups; `None` where no light can arrive.
     #[inline(always)]
     fn shares(&self, receiver: &Receiver, weights: &GroupWeights) -> Option<Shares> {
         let mut guessed = self.of_distant;
@@ -82,6 +106,7 @@ impl LightGroups {
         (sum > 0.0).then_some(Shares { guessed, chosen })
     }
 
+    /// See [`LightChoice::choose`](super::LightChoice::choose).
     #[inline(always)]
     pub fn choose(
         &self,
@@ -109,12 +134,15 @@ impl LightGroups {
             emitter: leaf.emitter,
             probability: leaf.probability,
             remainder: leaf.remainder,
-            group: group as u8,
-            guessed: shares.guessed[group],
-            of_group,
+            group: ChosenGroup {
+                number: group as u8,
+                guessed: shares.guessed[group],
+                chosen: of_group,
+            },
         })
     }
 
+    /// The lights of a group of those that are infinitely far away.
     fn distant_group(&self, group: usize) -> &[usize] {
         let index = group - self.first_distant;
         if group == GROUPS - 1 {
@@ -124,6 +152,7 @@ impl LightGroups {
         }
     }
 
+    /// See [`LightChoice::probability`](super::LightChoice::probability).
     #[inline]
     pub fn probability(&self, receiver: &Receiver, weights: &GroupWeights, emitter: usize) -> f32 {
         let Some(shares) = self.shares(receiver, weights) else {

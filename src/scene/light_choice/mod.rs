@@ -1,7 +1,7 @@
 //! Which of many lights next-event estimation looks at: each by what it can contribute.
 //!
-//! Lights that have a place stand in a [tree](tree::LightTree); those that are infinitely far away are chosen beside it,
-//! each with the same probability as the whole tree. Wherever light can arrive, it has a positive probability.
+//! Lights that have a place stand in a [tree](tree::LightTree); of those that are infinitely far away it is guessed that each sends as much as the whole tree.
+//! What is guessed of [groups] of lights is multiplied by what renders learn of them. Wherever light can arrive, it has a positive probability.
 
 mod bounds;
 mod branch;
@@ -13,7 +13,7 @@ mod tree;
 
 pub use bounds::LightBounds;
 pub use cone::Cone;
-pub use groups::{GROUPS, GroupWeights};
+pub use groups::{ChosenGroup, GROUPS, GroupWeights};
 
 use glam::Vec3;
 
@@ -56,12 +56,8 @@ pub struct ChosenLight {
     pub probability: f32,
     /// What is left of the uniform number, itself uniform in [0, 1).
     pub remainder: f32,
-    /// The group to which it belongs, and with which probability that would have been chosen by what is guessed alone.
-    pub group: u8,
-    /// See `group`.
-    pub guessed: f32,
-    /// The probability with which the group was chosen.
-    pub of_group: f32,
+    /// The group to which it belongs.
+    pub group: ChosenGroup,
 }
 
 impl LightChoice {
@@ -128,9 +124,7 @@ impl LightChoice {
                 emitter,
                 probability: 1.0,
                 remainder: u,
-                group: 0,
-                guessed: 1.0,
-                of_group: 1.0,
+                group: ChosenGroup::ONLY,
             }),
             Kind::Several(groups) => groups.choose(receiver, weights, u),
         }

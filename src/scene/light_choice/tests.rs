@@ -27,8 +27,16 @@ fn choice(scene: &Scene) -> LightChoice {
     LightChoice::new(&scene.emitters, &scene.shapes)
 }
 
+const POINT: &str = r#"<emitter type="point"/>"#;
+const DIRECTIONAL: &str = r#"<emitter type="directional"/>"#;
+
 /// `count` lamps of every kind and of very different brightness, in a cube of side 20 about the origin.
 fn lamps(count: usize, seed: u32) -> Scene {
+    lamps_and_distant(count, 0, seed)
+}
+
+/// The same, and `distant` ones that are infinitely far away.
+fn lamps_and_distant(count: usize, distant: usize, seed: u32) -> Scene {
     let mut random = random(seed);
     let mut text = String::new();
     for lamp in 0..count {
@@ -59,6 +67,7 @@ fn lamps(count: usize, seed: u32) -> Scene {
         }
         .unwrap();
     }
+    text += &DIRECTIONAL.repeat(distant);
     scene(&text)
 }
 
@@ -97,9 +106,7 @@ fn without_a_choice_there_is_nothing_to_choose() {
             emitter: 1,
             probability: 1.0,
             remainder: 0.25,
-            group: 0,
-            guessed: 1.0,
-            of_group: 1.0,
+            group: ChosenGroup::ONLY,
         };
         assert_eq!(
             only.choose(&UPWARDS, &GroupWeights::EQUAL, 0.25),
@@ -112,10 +119,8 @@ fn without_a_choice_there_is_nothing_to_choose() {
 
 #[test]
 fn lights_from_afar_stand_beside_the_tree() {
-    let point = r#"<emitter type="point"/>"#;
-    let scene = scene(&format!(
-        r#"{point}<emitter type="constant"/>{point}<emitter type="directional"/>{point}"#
-    ));
+    let constant = r#"<emitter type="constant"/>"#;
+    let scene = scene(&[POINT, constant, POINT, DIRECTIONAL, POINT].concat());
     let choice = choice(&scene);
     let receiver = Receiver {
         position: Vec3::X,
@@ -137,8 +142,9 @@ fn lights_from_afar_stand_beside_the_tree() {
 #[test]
 fn choices_follow_their_probabilities() {
     const DRAWS: u32 = 20_000;
-    for count in [2, 3, 10, 100] {
-        let scene = lamps(count, count as u32);
+    for (near, distant) in [(2, 0), (3, 1), (0, 6), (10, 6), (100, 2), (100, 0)] {
+        let count = near + distant;
+        let scene = lamps_and_distant(near, distant, count as u32);
         let choice = choice(&scene);
         let mut random = random(99);
         for _ in 0..20 {
@@ -205,6 +211,51 @@ fn lights_below_the_surface_are_left_out() {
         ..UPWARDS
     });
     assert!(through.iter().all(|&p| p > 0.1), "{through:?}");
+}
+
+/// Every light is chosen in proportion to what is guessed of it times the weight of its group.
+#[test]
+fn groups_are_weighed() {
+    // Two groups of points, and four of the lights from afar, of which the last has three.
+    let scene = scene(&[POINT.repeat(2), DIRECTIONAL.repeat(6)].concat());
+    let choice = choice(&scene);
+    let receiver = Receiver {
+        position: Vec3::X,
+        scatters_below: true,
+        ..UPWARDS
+    };
+    let weights = GroupWeights([0.5, 8.0, 1.0, 1.0, 2.0, 0.25, 1.0, 4.0]);
+    let mut chosen_of = [None; 8];
+    for i in 0..1000 {
+        let chosen = choice.choose(&receiver, &weights, i as f32 / 1000.0);
+        let chosen = chosen.expect("light arrives from everywhere");
+        chosen_of[chosen.emitter] = Some(chosen);
+    }
+    let chosen_of = chosen_of.map(|chosen| chosen.expect("all are chosen at times"));
+    assert_eq!(
+        chosen_of.map(|chosen| chosen.group.number),
+        [0, 1, 4, 5, 6, 7, 7, 7]
+    );
+    // Each light from afar as much as both points together.
+    let guessed = [0.5, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0].map(|share| share / 7.0);
+    let of_group = |chosen: &ChosenLight| weights.0[usize::from(chosen.group.number)];
+    let weighed: Vec<f32> = chosen_of.iter().map(of_group).collect();
+    let total: f32 = guessed
+        .iter()
+        .zip(&weighed)
+        .map(|(p, weight)| p * weight)
+        .sum();
+    for (emitter, chosen) in chosen_of.iter().enumerate() {
+        let expected = guessed[emitter] * weighed[emitter] / total;
+        let probability = choice.probability(&receiver, &weights, emitter);
+        assert!(
+            (probability - expected).abs() < 1e-6,
+            "{emitter}: {probability}, {expected}"
+        );
+        let in_group = if emitter < 5 { 1.0 } else { 3.0 };
+        assert!((chosen.group.guessed - in_group * guessed[emitter]).abs() < 1e-6);
+        assert!((chosen.group.chosen - in_group * expected).abs() < 1e-6);
+    }
 }
 
 /// Points that shine everywhere leave no place without light: the probabilities add up to 1.
