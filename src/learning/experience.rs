@@ -287,7 +287,11 @@ mod tests {
         let tree = tree();
         let look = |value| LightObservation {
             address: address(&tree, 0.2),
-            group: ChosenGroup::ONLY,
+            group: ChosenGroup {
+                number: 2,
+                guessed: 0.5,
+                chosen: 0.25,
+            },
             value,
         };
         let mut experience = Experience::default();

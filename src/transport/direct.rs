@@ -35,11 +35,10 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     expected: &[ExpectedCount],
     sampler: &mut Sampler,
     knowledge: Option<&Knowledge>,
-    looks: Option<&mut Vec<LightObservation>>,
+    mut looks: Option<&mut Vec<LightObservation>>,
     shadow: &mut ShadowRays<C>,
 ) {
     let (samples, depth) = (engine.settings.samples, vertices.depth);
-    let mut looks = looks.filter(|_| engine.light_choice.depends_on_surface());
     shadow.restart(vertices.len() * samples.emitters as usize);
     let mut numbers = [[0.0; CHUNK]; 3];
     let mut positions = VectorLanes::default();
@@ -225,7 +224,7 @@ impl ShadowChunk {
 }
 
 /// Adds what each light drawn for the vertices from number `start` on contributes, if nothing is in its way, to the `looks`; returns the numbers of these, lane by
-/// lane, which mean nothing where no light was drawn.
+/// lane, which mean nothing where there is none.
 #[inline(always)]
 fn note_looks<C: Colour, V: Variant>(
     vertices: &Vertices<C, V>,
@@ -236,13 +235,13 @@ fn note_looks<C: Colour, V: Variant>(
 ) -> [u32; CHUNK] {
     let mut numbers = [0; CHUNK];
     for (lane, contribution) in contributions.iter().enumerate() {
-        if lights.probability[lane] > 0.0 {
+        if let Some(group) = lights.group[lane] {
             let vertex = start + lane;
             let reflected = vertices.throughput[vertex] * vertices.bsdf[vertex].albedo();
             numbers[lane] = looks.len() as u32;
             looks.push(LightObservation {
                 address: vertices.address[vertex],
-                group: lights.group[lane],
+                group,
                 value: contribution.mean() / reflected.mean(),
             });
         }

@@ -134,37 +134,55 @@ fn add_emission<C: Colour>(
     };
     for (lane, i) in chunk.enumerate() {
         let path = segments.path[i] as usize;
-        match surfaces.shapes[lane] {
+        let wavelengths = &wavelengths[path];
+        let direction = Vec3::from(segments.rays.direction(i));
+        let emitted = match surfaces.shapes[lane] {
             None => {
-                if let Some(emitter) = engine.surroundings.filter(|_| !hides_surroundings) {
+                let surroundings = engine.surroundings.filter(|_| !hides_surroundings);
+                surroundings.map(|emitter| {
                     let light = &engine.scene.emitters[emitter];
-                    let direction = Vec3::from(segments.rays.direction(i));
-                    let light_pdf = light.surrounding_pdf(direction);
-                    let weight = engine.mis_weight(segments, i, emitter, light_pdf, knowledge);
-                    let wavelengths = &wavelengths[path];
-                    let radiance = light.surrounding_radiance::<C>(direction, wavelengths) * weight;
-                    add(i, path, segments.throughput[i] * radiance);
-                }
+                    Emitted {
+                        emitter,
+                        radiance: light.surrounding_radiance::<C>(direction, wavelengths),
+                        light_pdf: light.surrounding_pdf(direction),
+                    }
+                })
             }
             Some(shape) => {
-                if let Some(emitter) = shape.emitter.map(EmitterId::index)
-                    && let Emitter::Area(light) = &engine.scene.emitters[emitter]
-                {
+                let emitter = shape.emitter.map(EmitterId::index);
+                emitter.and_then(|emitter| {
+                    let Emitter::Area(light) = &engine.scene.emitters[emitter] else {
+                        return None;
+                    };
                     let point = surfaces.points.get(lane);
-                    let direction = Vec3::from(segments.rays.direction(i));
-                    let wavelengths = &wavelengths[path];
                     let parameters = || shape.geometry.parameters(&segments.hit(i), &point);
                     let radiance = light.radiance::<C>(&point, parameters, -direction, wavelengths);
-                    if !radiance.is_black() {
-                        let origin = Vec3::from(segments.rays.origin(i));
-                        let light_pdf = light.pdf(&engine.scene.shapes, origin, &point);
-                        let weight = engine.mis_weight(segments, i, emitter, light_pdf, knowledge);
-                        add(i, path, segments.throughput[i] * (radiance * weight));
-                    }
-                }
+                    let origin = Vec3::from(segments.rays.origin(i));
+                    (!radiance.is_black()).then(|| Emitted {
+                        emitter,
+                        radiance,
+                        light_pdf: light.pdf(&engine.scene.shapes, origin, &point),
+                    })
+                })
             }
+        };
+        if let Some(emitted) = emitted {
+            let weight = engine.mis_weight(segments, i, &emitted, knowledge);
+            add(
+                i,
+                path,
+                segments.throughput[i] * (emitted.radiance * weight),
+            );
         }
     }
+}
+
+/// Light that a segment meets.
+struct Emitted<C: Colour> {
+    emitter: usize,
+    radiance: C::Spectrum,
+    /// The density with which next-event estimation draws the same direction once it has chosen that emitter.
+    light_pdf: SolidAnglePdf,
 }
 
 /// From which sides the segments of a chunk see their surfaces.
@@ -200,15 +218,13 @@ impl SideChunk {
 }
 
 impl Engine {
-    /// The weight of light that segment `i` found at `emitter`, where next-event estimation draws the same direction with
-    /// `light_pdf` once it has chosen that emitter.
-    #[inline]
+    /// The weight of what segment `i` found emitted.
+    #[inline(always)]
     fn mis_weight<C: Colour>(
         &self,
         segments: &Segments<C>,
         i: usize,
-        emitter: usize,
-        light_pdf: SolidAnglePdf,
+        emitted: &Emitted<C>,
         knowledge: Option<&Knowledge>,
     ) -> f32 {
         let direction_pdf = segments.direction_pdf[i];
@@ -219,13 +235,14 @@ impl Engine {
             Some(origin) => {
                 let weights = group_weights(knowledge, origin.insight);
                 self.light_choice
-                    .probability(&origin.receiver, weights, emitter)
+                    .probability(&origin.receiver, weights, emitted.emitter)
             }
             None => 1.0,
         };
         power_heuristic(
             direction_pdf,
-            light_pdf
+            emitted
+                .light_pdf
                 .chosen_with(chosen_with)
                 .taken_times(self.settings.samples.emitters as f32),
         )

@@ -21,8 +21,8 @@ pub(super) struct LightChunk<C: Colour> {
     emitter: [u32; CHUNK],
     /// The probability of that choice; 0 where no light can arrive.
     pub probability: [f32; CHUNK],
-    /// The group to which it belongs.
-    pub group: [ChosenGroup; CHUNK],
+    /// The group of emitters from which it was chosen; `None` where nothing is learned of groups, or no light can arrive.
+    pub group: [Option<ChosenGroup>; CHUNK],
     lamps: LampLanes,
     /// Unit direction from the vertex to the light, in world space.
     pub direction: VectorLanes<CHUNK>,
@@ -36,13 +36,10 @@ pub(super) struct LightChunk<C: Colour> {
     pub weight: [C::Spectrum; CHUNK],
 }
 
-/// What groups of lights are chosen by at a place with that `insight` (see [`Knowledge::insight`]).
+/// What was learned of groups of lights at a place with that `insight` (see [`Knowledge::insight`]).
 #[inline(always)]
-pub(super) fn group_weights(knowledge: Option<&Knowledge>, insight: u32) -> &GroupWeights {
-    match knowledge {
-        Some(knowledge) => &knowledge.insight(insight).lights,
-        None => &GroupWeights::EQUAL,
-    }
+pub(super) fn group_weights(knowledge: Option<&Knowledge>, insight: u32) -> Option<&GroupWeights> {
+    knowledge.map(|knowledge| &knowledge.insight(insight).lights)
 }
 
 /// No emitter.
@@ -90,7 +87,7 @@ impl<C: Colour> LightChunk<C> {
         Self {
             emitter: [0; CHUNK],
             probability: [1.0; CHUNK],
-            group: [ChosenGroup::ONLY; CHUNK],
+            group: [None; CHUNK],
             lamps: LampLanes::new(),
             direction: VectorLanes::default(),
             distance: [0.0; CHUNK],
@@ -161,8 +158,9 @@ impl<C: Colour> LightChunk<C> {
             return;
         }
         for (lane, i) in chunk.enumerate() {
+            self.probability[lane] = 0.0;
+            self.group[lane] = None;
             if !vertices.bsdf[i].has_smooth_lobe() {
-                self.probability[lane] = 0.0;
                 continue;
             }
             let Origin { receiver, insight } = vertices.origin(i);
@@ -170,13 +168,10 @@ impl<C: Colour> LightChunk<C> {
             let chosen = engine
                 .light_choice
                 .choose(&receiver, weights, numbers[lane]);
-            match chosen {
-                Some(chosen) => {
-                    self.emitter[lane] = chosen.emitter as u32;
-                    self.probability[lane] = chosen.probability;
-                    self.group[lane] = chosen.group;
-                }
-                None => self.probability[lane] = 0.0,
+            if let Some(chosen) = chosen {
+                self.emitter[lane] = chosen.emitter as u32;
+                self.probability[lane] = chosen.probability;
+                self.group[lane] = chosen.group;
             }
         }
     }

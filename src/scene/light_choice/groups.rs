@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::branch::PlacedLight;
-use super::tree::{Leaf, LightTree, WIDTH, pick};
+use super::tree::{Child, Leaf, LightTree, WIDTH, pick};
 use super::{BELOW_ONE, ChosenLight, Receiver};
 
 /// How many groups there are at the most: the children of the tree's root, and what is infinitely far away.
@@ -30,15 +30,6 @@ pub struct ChosenGroup {
     pub guessed: f32,
     /// That with which it was chosen, positive.
     pub chosen: f32,
-}
-
-impl ChosenGroup {
-    /// What is chosen where there is no choice.
-    pub const ONLY: Self = Self {
-        number: 0,
-        guessed: 1.0,
-        chosen: 1.0,
-    };
 }
 
 /// All lights, in groups.
@@ -111,35 +102,76 @@ impl LightGroups {
     pub fn choose(
         &self,
         receiver: &Receiver,
-        weights: &GroupWeights,
+        weights: Option<&GroupWeights>,
         u: f32,
     ) -> Option<ChosenLight> {
-        let shares = self.shares(receiver, weights)?;
-        let (group, u) = pick(&shares.chosen, u);
-        let of_group = shares.chosen[group];
-        let leaf = if group >= self.first_distant {
-            let lights = self.distant_group(group);
-            let scaled = u * lights.len() as f32;
-            let index = (scaled as usize).min(lights.len() - 1);
-            Leaf {
-                emitter: lights[index],
-                probability: of_group / lights.len() as f32,
-                remainder: (scaled - index as f32).min(BELOW_ONE),
+        let (entry, group) = match weights {
+            Some(weights) => {
+                let (entry, group) = self.enter_weighed(receiver, weights, u)?;
+                (entry, Some(group))
             }
-        } else {
-            let tree = self.tree.as_ref()?;
-            tree.choose_below(group, of_group, receiver, u)?
+            None => (self.enter(u), None),
+        };
+        let leaf = match (entry, &self.tree) {
+            (Entry::Distant(leaf), _) => leaf,
+            (Entry::Tree(child, probability, u), Some(tree)) => {
+                tree.choose(child, probability, receiver, u)?
+            }
+            (Entry::Tree(..), None) => return None,
         };
         Some(ChosenLight {
             emitter: leaf.emitter,
             probability: leaf.probability,
             remainder: leaf.remainder,
-            group: ChosenGroup {
-                number: group as u8,
-                guessed: shares.guessed[group],
-                chosen: of_group,
-            },
+            group,
         })
+    }
+
+    /// Chooses by what is guessed alone; the tree need not be asked for that.
+    #[inline(always)]
+    fn enter(&self, u: f32) -> Entry {
+        let choices = self.distant.len() + usize::from(self.tree.is_some());
+        let (index, remainder) = pick_evenly(choices, u);
+        match self.distant.get(index) {
+            Some(&emitter) => Entry::Distant(Leaf {
+                emitter,
+                probability: self.each,
+                remainder,
+            }),
+            None => Entry::Tree(LightTree::ROOT, self.each, remainder),
+        }
+    }
+
+    /// Chooses a group by what is guessed and learned.
+    #[inline(always)]
+    fn enter_weighed(
+        &self,
+        receiver: &Receiver,
+        weights: &GroupWeights,
+        u: f32,
+    ) -> Option<(Entry, ChosenGroup)> {
+        let shares = self.shares(receiver, weights)?;
+        let (number, u) = pick(&shares.chosen, u);
+        let group = ChosenGroup {
+            number: number as u8,
+            guessed: shares.guessed[number],
+            chosen: shares.chosen[number],
+        };
+        let entry = match &self.tree {
+            Some(tree) if number < self.first_distant => {
+                Entry::Tree(tree.below_root(number), group.chosen, u)
+            }
+            _ => {
+                let lights = self.distant_group(number);
+                let (index, remainder) = pick_evenly(lights.len(), u);
+                Entry::Distant(Leaf {
+                    emitter: lights[index],
+                    probability: group.chosen / lights.len() as f32,
+                    remainder,
+                })
+            }
+        };
+        Some((entry, group))
     }
 
     /// The lights of a group of those that are infinitely far away.
@@ -153,18 +185,58 @@ impl LightGroups {
     }
 
     /// See [`LightChoice::probability`](super::LightChoice::probability).
-    #[inline]
-    pub fn probability(&self, receiver: &Receiver, weights: &GroupWeights, emitter: usize) -> f32 {
-        let Some(shares) = self.shares(receiver, weights) else {
-            return 0.0;
+    #[inline(always)]
+    pub fn probability(
+        &self,
+        receiver: &Receiver,
+        weights: Option<&GroupWeights>,
+        emitter: usize,
+    ) -> f32 {
+        let shares = match weights.map(|weights| self.shares(receiver, weights)) {
+            Some(None) => return 0.0,
+            Some(Some(shares)) => Some(shares.chosen),
+            None => None,
         };
-        if let Some(index) = self.distant.iter().position(|&light| light == emitter) {
-            let group = (self.first_distant + index).min(GROUPS - 1);
-            return shares.chosen[group] / self.distant_group(group).len() as f32;
+        let way = self
+            .tree
+            .as_ref()
+            .and_then(|tree| Some((tree, tree.way(emitter)?)));
+        match (way, shares) {
+            (Some((tree, way)), None) => {
+                tree.probability(LightTree::ROOT, way, self.each, receiver)
+            }
+            (Some((tree, [first, way @ ..])), Some(shares)) => {
+                let first = usize::from(*first);
+                tree.probability(tree.below_root(first), way, shares[first], receiver)
+            }
+            _ => self.distant_probability(emitter, shares.as_ref()),
         }
-        let Some(tree) = &self.tree else {
+    }
+
+    /// The same for what is not in the tree.
+    fn distant_probability(&self, emitter: usize, shares: Option<&[f32; GROUPS]>) -> f32 {
+        let Some(index) = self.distant.iter().position(|&light| light == emitter) else {
             return 0.0;
         };
-        tree.probability(&shares.chosen, receiver, emitter)
+        let group = (self.first_distant + index).min(GROUPS - 1);
+        let in_group =
+            |shares: &[f32; GROUPS]| shares[group] / self.distant_group(group).len() as f32;
+        shares.map_or(self.each, in_group)
     }
+}
+
+/// What was chosen first.
+enum Entry {
+    /// A light that is infinitely far away.
+    Distant(Leaf),
+    /// Lights of the tree, with which probability, and what is left of the uniform number.
+    Tree(Child, f32, f32),
+}
+
+/// One of `count` things, all of which are as likely, by `u`, uniform in [0, 1), and what is left of that.
+#[inline(always)]
+fn pick_evenly(count: usize, u: f32) -> (usize, f32) {
+    let scaled = u * count as f32;
+    let index = (scaled as usize).min(count - 1);
+    (index, (scaled - index as f32).min(BELOW_ONE))
 }

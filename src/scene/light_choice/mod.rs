@@ -56,8 +56,8 @@ pub struct ChosenLight {
     pub probability: f32,
     /// What is left of the uniform number, itself uniform in [0, 1).
     pub remainder: f32,
-    /// The group to which it belongs.
-    pub group: ChosenGroup,
+    /// The group to which it belongs; `None` where there was no choice, or no weights.
+    pub group: Option<ChosenGroup>,
 }
 
 impl LightChoice {
@@ -109,13 +109,13 @@ impl LightChoice {
         matches!(self.0, Kind::Several(_))
     }
 
-    /// Chooses an emitter for a surface from the uniform number `u` in [0, 1), where what is guessed of groups is to be multiplied by `weights`. `None` where
-    /// no light can arrive.
+    /// Chooses an emitter for a surface from the uniform number `u` in [0, 1), where what is guessed of groups is to be multiplied by `weights`, if
+    /// there are any. `None` where no light can arrive.
     #[inline(always)]
     pub fn choose(
         &self,
         receiver: &Receiver,
-        weights: &GroupWeights,
+        weights: Option<&GroupWeights>,
         u: f32,
     ) -> Option<ChosenLight> {
         match &self.0 {
@@ -124,15 +124,20 @@ impl LightChoice {
                 emitter,
                 probability: 1.0,
                 remainder: u,
-                group: ChosenGroup::ONLY,
+                group: None,
             }),
             Kind::Several(groups) => groups.choose(receiver, weights, u),
         }
     }
 
     /// The probability with which [`Self::choose`] chooses `emitter` for the same surface.
-    #[inline]
-    pub fn probability(&self, receiver: &Receiver, weights: &GroupWeights, emitter: usize) -> f32 {
+    #[inline(always)]
+    pub fn probability(
+        &self,
+        receiver: &Receiver,
+        weights: Option<&GroupWeights>,
+        emitter: usize,
+    ) -> f32 {
         match &self.0 {
             Kind::None => 0.0,
             &Kind::Only(only) => f32::from(u8::from(emitter == only)),

@@ -96,8 +96,8 @@ const UPWARDS: Receiver = Receiver {
 fn without_a_choice_there_is_nothing_to_choose() {
     let none = choice(&scene(""));
     assert!(!none.depends_on_surface());
-    assert_eq!(none.choose(&UPWARDS, &GroupWeights::EQUAL, 0.25), None);
-    assert_eq!(none.probability(&UPWARDS, &GroupWeights::EQUAL, 0), 0.0);
+    assert_eq!(none.choose(&UPWARDS, None, 0.25), None);
+    assert_eq!(none.probability(&UPWARDS, None, 0), 0.0);
     let black = r#"<emitter type="point"><rgb name="intensity" value="0"/></emitter>"#;
     for only in [r#"<emitter type="constant"/>"#, r#"<emitter type="spot"/>"#] {
         let only = choice(&scene(&format!("{black}{only}")));
@@ -106,14 +106,11 @@ fn without_a_choice_there_is_nothing_to_choose() {
             emitter: 1,
             probability: 1.0,
             remainder: 0.25,
-            group: ChosenGroup::ONLY,
+            group: None,
         };
-        assert_eq!(
-            only.choose(&UPWARDS, &GroupWeights::EQUAL, 0.25),
-            Some(chosen)
-        );
-        assert_eq!(only.probability(&UPWARDS, &GroupWeights::EQUAL, 0), 0.0);
-        assert_eq!(only.probability(&UPWARDS, &GroupWeights::EQUAL, 1), 1.0);
+        assert_eq!(only.choose(&UPWARDS, None, 0.25), Some(chosen));
+        assert_eq!(only.probability(&UPWARDS, None, 0), 0.0);
+        assert_eq!(only.probability(&UPWARDS, None, 1), 1.0);
     }
 }
 
@@ -126,8 +123,7 @@ fn lights_from_afar_stand_beside_the_tree() {
         position: Vec3::X,
         ..UPWARDS
     };
-    let probabilities =
-        [0, 1, 2, 3, 4].map(|i| choice.probability(&receiver, &GroupWeights::EQUAL, i));
+    let probabilities = [0, 1, 2, 3, 4].map(|i| choice.probability(&receiver, None, i));
     assert_eq!((probabilities[1], probabilities[3]), (1.0 / 3.0, 1.0 / 3.0));
     for near in [0, 2, 4] {
         assert!(
@@ -147,24 +143,25 @@ fn choices_follow_their_probabilities() {
         let scene = lamps_and_distant(near, distant, count as u32);
         let choice = choice(&scene);
         let mut random = random(99);
-        for _ in 0..20 {
+        for case in 0..20 {
             let receiver = surface(&mut random);
             let weights = GroupWeights([(); GROUPS].map(|()| 0.125 + 8.0 * random.uniform()));
+            let weights = (case % 2 == 0).then_some(&weights);
             let mut counts = vec![0.0; count];
             let mut nothing = 0.0;
             for _ in 0..DRAWS {
                 let u = random.uniform();
-                let Some(chosen) = choice.choose(&receiver, &weights, u) else {
+                let Some(chosen) = choice.choose(&receiver, weights, u) else {
                     nothing += 1.0;
                     continue;
                 };
                 counts[chosen.emitter] += 1.0;
-                let probability = choice.probability(&receiver, &weights, chosen.emitter);
+                let probability = choice.probability(&receiver, weights, chosen.emitter);
                 assert_eq!(chosen.probability, probability);
                 assert!((0.0..1.0).contains(&chosen.remainder));
             }
             let probabilities: Vec<f64> = (0..count)
-                .map(|emitter| f64::from(choice.probability(&receiver, &weights, emitter)))
+                .map(|emitter| f64::from(choice.probability(&receiver, weights, emitter)))
                 .collect();
             let total: f64 = probabilities.iter().sum();
             assert!(total < 1.0 + 1e-5, "{total}");
@@ -201,8 +198,7 @@ fn lights_below_the_surface_are_left_out() {
     };
     let scene = scene(&[3.0, -3.0, 5.0, -4.0].map(point).concat());
     let choice = choice(&scene);
-    let probabilities =
-        |receiver| [0, 1, 2, 3].map(|i| choice.probability(&receiver, &GroupWeights::EQUAL, i));
+    let probabilities = |receiver| [0, 1, 2, 3].map(|i| choice.probability(&receiver, None, i));
     let [first, below, second, further_below] = probabilities(UPWARDS);
     assert_eq!((below, further_below), (0.0, 0.0));
     assert!(first > second && (first + second - 1.0).abs() < 1e-6);
@@ -225,36 +221,34 @@ fn groups_are_weighed() {
         ..UPWARDS
     };
     let weights = GroupWeights([0.5, 8.0, 1.0, 1.0, 2.0, 0.25, 1.0, 4.0]);
+    let weigh = |group: ChosenGroup| weights.0[usize::from(group.number)];
+    let weights = Some(&weights);
     let mut chosen_of = [None; 8];
     for i in 0..1000 {
-        let chosen = choice.choose(&receiver, &weights, i as f32 / 1000.0);
+        let chosen = choice.choose(&receiver, weights, i as f32 / 1000.0);
         let chosen = chosen.expect("light arrives from everywhere");
-        chosen_of[chosen.emitter] = Some(chosen);
+        chosen_of[chosen.emitter] = chosen.group;
     }
-    let chosen_of = chosen_of.map(|chosen| chosen.expect("all are chosen at times"));
-    assert_eq!(
-        chosen_of.map(|chosen| chosen.group.number),
-        [0, 1, 4, 5, 6, 7, 7, 7]
-    );
+    let groups = chosen_of.map(|group| group.expect("all are chosen at times"));
+    assert_eq!(groups.map(|group| group.number), [0, 1, 4, 5, 6, 7, 7, 7]);
     // Each light from afar as much as both points together.
     let guessed = [0.5, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0].map(|share| share / 7.0);
-    let of_group = |chosen: &ChosenLight| weights.0[usize::from(chosen.group.number)];
-    let weighed: Vec<f32> = chosen_of.iter().map(of_group).collect();
+    let weighed = groups.map(weigh);
     let total: f32 = guessed
         .iter()
-        .zip(&weighed)
+        .zip(weighed)
         .map(|(p, weight)| p * weight)
         .sum();
-    for (emitter, chosen) in chosen_of.iter().enumerate() {
+    for (emitter, group) in groups.into_iter().enumerate() {
         let expected = guessed[emitter] * weighed[emitter] / total;
-        let probability = choice.probability(&receiver, &weights, emitter);
+        let probability = choice.probability(&receiver, weights, emitter);
         assert!(
             (probability - expected).abs() < 1e-6,
             "{emitter}: {probability}, {expected}"
         );
         let in_group = if emitter < 5 { 1.0 } else { 3.0 };
-        assert!((chosen.group.guessed - in_group * guessed[emitter]).abs() < 1e-6);
-        assert!((chosen.group.chosen - in_group * expected).abs() < 1e-6);
+        assert!((group.guessed - in_group * guessed[emitter]).abs() < 1e-6);
+        assert!((group.chosen - in_group * expected).abs() < 1e-6);
     }
 }
 
@@ -278,7 +272,7 @@ fn probabilities_add_up() {
             ..surface(&mut random)
         };
         let total: f32 = (0..50)
-            .map(|i| choice.probability(&receiver, &GroupWeights::EQUAL, i))
+            .map(|i| choice.probability(&receiver, None, i))
             .sum();
         assert!((total - 1.0).abs() < 1e-4, "{total}");
     }
@@ -298,7 +292,7 @@ proptest! {
                 let u = random.uniform_2d();
                 let sample = emitter.sample::<Rgb>(&scene.shapes, receiver.position, &(), u);
                 if sample.is_some_and(|sample| sample.weight.0[0] > 0.0 && counts(&receiver, sample.direction)) {
-                    let probability = choice.probability(&receiver, &GroupWeights::EQUAL, index);
+                    let probability = choice.probability(&receiver, None, index);
                     prop_assert!(probability > 0.0, "{:?}", scene.emitters[index]);
                 }
             }
@@ -330,7 +324,7 @@ fn the_right_lamps_are_chosen() {
             })
         };
         let v = random.uniform();
-        if let Some(chosen) = choice.choose(&receiver, &GroupWeights::EQUAL, v) {
+        if let Some(chosen) = choice.choose(&receiver, None, v) {
             let value = arrives(chosen.emitter) / f64::from(chosen.probability);
             mean += value / DRAWS as f64;
             squares += value * value / DRAWS as f64;

@@ -25,8 +25,9 @@ struct Node {
     children: [Child; WIDTH],
 }
 
+/// Lights of the tree.
 #[derive(Clone, Copy, Debug)]
-enum Child {
+pub enum Child {
     /// The lane is empty: it has no power, and is never chosen.
     None,
     Node(u32),
@@ -37,6 +38,9 @@ enum Child {
 const LEAST_SHARE: f32 = 1e-3;
 
 impl LightTree {
+    /// All lights.
+    pub const ROOT: Child = Child::Node(0);
+
     /// The tree of `lights`, whose root has at most `most` children; `None` if there are none.
     pub fn new(mut lights: Vec<PlacedLight>, most: usize) -> Option<Self> {
         let emitters = lights
@@ -79,20 +83,31 @@ impl LightTree {
         self.nodes[0].shares(receiver)
     }
 
-    /// Chooses a light below the root's child in a `lane`, which was chosen with that `probability`, for a surface from `u` in [0, 1). `None` where none of
-    /// these can arrive.
+    /// The lights in one of the `lanes` of the root.
     #[inline(always)]
-    pub fn choose_below(
+    pub fn below_root(&self, lane: usize) -> Child {
+        self.nodes[0].children[lane]
+    }
+
+    /// The ways to an emitter from the root: which child to go to from each node; `None` if it is not in the tree.
+    #[inline(always)]
+    pub fn way(&self, emitter: usize) -> Option<&[u8]> {
+        self.ways.get(emitter)?.as_deref()
+    }
+
+    /// Chooses one of the lights of a `child`, which was itself chosen with that `probability`, for a surface from `u` in [0, 1). `None` where none of these can
+    /// arrive.
+    #[inline(always)]
+    pub fn choose(
         &self,
-        mut lane: usize,
+        mut child: Child,
         mut probability: f32,
         receiver: &Receiver,
         mut u: f32,
     ) -> Option<Leaf> {
-        let mut node = &self.nodes[0];
         loop {
-            match node.children[lane] {
-                Child::Node(next) => node = &self.nodes[next as usize],
+            let node = match child {
+                Child::Node(node) => &self.nodes[node as usize],
                 Child::Emitter(emitter) => {
                     return Some(Leaf {
                         emitter: emitter as usize,
@@ -101,38 +116,34 @@ impl LightTree {
                     });
                 }
                 Child::None => return None,
-            }
+            };
             let shares = node.shares(receiver)?;
+            let lane;
             (lane, u) = pick(&shares, u);
             probability *= shares[lane];
+            child = node.children[lane];
         }
     }
 
-    /// The probability with which an emitter is chosen where the children of the root have these `shares`.
-    #[inline]
+    /// The probability with which [`Self::choose`] chooses the emitter at the end of the `way` from that `child`.
+    #[inline(always)]
     pub fn probability(
         &self,
-        root_shares: &[f32; WIDTH],
+        mut child: Child,
+        way: &[u8],
+        mut probability: f32,
         receiver: &Receiver,
-        emitter: usize,
     ) -> f32 {
-        let Some(Some(way)) = self.ways.get(emitter) else {
-            return 0.0;
-        };
-        let [first, rest @ ..] = &way[..] else {
-            return 0.0;
-        };
-        let mut lane = usize::from(*first);
-        let (mut node, mut probability) = (&self.nodes[0], root_shares[lane]);
-        for &next_lane in rest {
-            if let Child::Node(next) = node.children[lane] {
-                node = &self.nodes[next as usize];
-            }
+        for &lane in way {
+            let Child::Node(node) = child else {
+                return 0.0;
+            };
+            let node = &self.nodes[node as usize];
             let Some(shares) = node.shares(receiver) else {
                 return 0.0;
             };
-            lane = usize::from(next_lane);
-            probability *= shares[lane];
+            probability *= shares[usize::from(lane)];
+            child = node.children[usize::from(lane)];
         }
         probability
     }
