@@ -6,7 +6,8 @@ use super::light_sums::LightSums;
 use super::mixture::MixtureSums;
 use super::square_warp::SIDE;
 use super::{
-    CellTree, Insight, LightObservation, Observation, Observations, PixelObservation, SquareWarp,
+    CellTree, Insight, Insights, LightObservation, Observation, Observations, PixelObservation,
+    SquareWarp,
 };
 use crate::sampling::FRAME_CLASSES;
 
@@ -112,7 +113,6 @@ impl Sums {
             cost: filled(self.cost, family.cost),
             guides,
             mixed_share: family.mixture.best(),
-            lights: self.lights.weights(&family.lights),
             warp: if guides { warp } else { SquareWarp::UNIFORM },
         }
     }
@@ -221,8 +221,8 @@ impl Experience {
         });
     }
 
-    /// What is to be learned from all that: for every address the number of an insight, and the insights.
-    pub(super) fn insights(&self, tree: &CellTree) -> (Vec<u32>, Vec<Insight>) {
+    /// What is to be learned from all that.
+    pub(super) fn insights(&self, tree: &CellTree) -> Insights {
         let families = tree.families(TO_FAMILY);
         let mut of_families: std::collections::BTreeMap<(u32, usize), Sums> = Default::default();
         let observed = self
@@ -235,14 +235,17 @@ impl Experience {
             let sums = of_families.entry(family(address)).or_default();
             sums.add(&self.sums[place as usize - 1], 1.0);
         }
-        let mut places = vec![0; self.places.len()];
-        let mut insights = Vec::with_capacity(self.sums.len() + 1);
-        insights.push(Insight::NONE);
+        let mut insights = Insights::nothing(self.places.len());
         for (address, &place) in observed {
-            places[address] = insights.len() as u32;
-            insights.push(self.sums[place as usize - 1].insight(&of_families[&family(address)]));
+            let (own, family) = (
+                &self.sums[place as usize - 1],
+                &of_families[&family(address)],
+            );
+            insights.places[address] = insights.of_paths.len() as u32;
+            insights.of_paths.push(own.insight(family));
+            insights.of_lights.push(own.lights.weights(&family.lights));
         }
-        (places, insights)
+        insights
     }
 }
 
@@ -320,7 +323,11 @@ mod tests {
         let (here, there) = (address(&tree, 0.1), address(&tree, 0.9));
         let mut experience = observed([observation(there, 5.0), observation(here, 1.0)]);
         experience.refine(&mut tree.clone());
-        let (places, insights) = experience.insights(&tree);
+        let Insights {
+            places,
+            of_paths: insights,
+            ..
+        } = experience.insights(&tree);
         assert_eq!(places.len(), tree.cells() as usize * FRAME_CLASSES);
         assert_eq!(places.iter().filter(|&&place| place > 0).count(), 2);
         assert_eq!(insights.len(), 3);
@@ -342,7 +349,11 @@ mod tests {
         let of_others = [observation(few, 8.0), observation(apart, 1e6)];
         let mut experience = observed(of_many.chain(of_others));
         experience.refine(&mut tree.clone());
-        let (places, insights) = experience.insights(&tree);
+        let Insights {
+            places,
+            of_paths: insights,
+            ..
+        } = experience.insights(&tree);
         let mean = |address: u32| insights[places[address as usize] as usize].mean;
         let family = (96.0 + 8.0) / 97.0;
         assert!((mean(few) - (8.0 + OF_FAMILY * family) / (1.0 + OF_FAMILY)).abs() < 1e-5);
@@ -365,7 +376,7 @@ mod tests {
         });
         let mut experience = observed(everywhere);
         experience.refine(&mut tree.clone());
-        let (_, insights) = experience.insights(&tree);
+        let insights = experience.insights(&tree).of_paths;
         // u is in bin 19 % 8, v in 19 / 8.
         let bright = insights[1].warp.density(Bin::of([3.5 / 8.0, 2.5 / 8.0]));
         let dark = insights[1].warp.density(Bin::of([2.5 / 8.0, 3.5 / 8.0]));
@@ -390,13 +401,13 @@ mod tests {
             };
             let mut experience = observed([observation; 100]);
             experience.refine(&mut tree);
-            experience.insights(&tree).1[1].mixed_share.value()
+            experience.insights(&tree).of_paths[1].mixed_share.value()
         };
         assert_eq!(share_by(1.9), 0.75);
         assert_eq!(share_by(0.1), 0.0);
         let mut experience = observed([observation(address(&tree(), 0.1), 1.0)]);
         experience.refine(&mut tree());
-        let (_, insights) = experience.insights(&tree());
+        let insights = experience.insights(&tree()).of_paths;
         assert_eq!(insights[1].mixed_share, GuidedShare::UNKNOWN);
     }
 
@@ -417,7 +428,7 @@ mod tests {
             });
             let mut experience = observed(from_everywhere);
             experience.refine(&mut tree);
-            let (_, insights) = experience.insights(&tree);
+            let insights = experience.insights(&tree).of_paths;
             assert!(insights.iter().all(|insight| !insight.guides), "{rare}");
         }
     }
@@ -445,7 +456,11 @@ mod tests {
         assert_eq!(f64::from(count_at(0.1)), MOST_PER_CELL);
         assert_eq!(f64::from(count_at(0.01)), MOST_PER_CELL);
         assert_eq!(count_at(0.9), 1.0);
-        let (places, insights) = experience.insights(&tree);
+        let Insights {
+            places,
+            of_paths: insights,
+            ..
+        } = experience.insights(&tree);
         assert_eq!(places.iter().filter(|&&place| place > 0).count(), 5);
         assert!(insights[1..2].iter().all(|insight| insight.mean == 0.5));
     }

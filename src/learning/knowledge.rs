@@ -27,8 +27,6 @@ pub struct Insight {
     pub guides: bool,
     /// How many of them, at surfaces with broad lobes of their own; it means nothing where they do not gain.
     pub mixed_share: GuidedShare,
-    /// How the groups of lights are chosen.
-    pub lights: GroupWeights,
     /// From where, on the square that directions are drawn from; uniform where they do not gain.
     pub warp: SquareWarp,
 }
@@ -41,19 +39,37 @@ impl Insight {
         cost: 1.0,
         guides: false,
         mixed_share: GuidedShare::UNKNOWN,
-        lights: GroupWeights::EQUAL,
         warp: SquareWarp::UNIFORM,
     };
+}
+
+/// What is known of all places, by number; number 0 is where nothing was observed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Insights {
+    /// The number of each address.
+    pub places: Vec<u32>,
+    /// What is known of paths that go on there.
+    pub of_paths: Vec<Insight>,
+    /// And of the groups of lights: apart, for both are asked for at different times, and these are so small that they stay in the cache.
+    pub of_lights: Vec<GroupWeights>,
+}
+
+impl Insights {
+    /// Nothing was observed at any of so many `addresses`.
+    pub fn nothing(addresses: usize) -> Self {
+        Self {
+            places: vec![0; addresses],
+            of_paths: vec![Insight::NONE],
+            of_lights: vec![GroupWeights::EQUAL],
+        }
+    }
 }
 
 /// What was learned; it changes between passes only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Knowledge {
     tree: CellTree,
-    /// The number of the insight of each address.
-    places: Vec<u32>,
-    /// The first is [`Insight::NONE`].
-    insights: Vec<Insight>,
+    insights: Insights,
     /// How often it has changed.
     lessons: u32,
     pixels: PixelKnowledge,
@@ -66,9 +82,8 @@ impl Knowledge {
     pub fn nothing(bounds: [Vec3; 2], film: ImageSize) -> Self {
         let tree = CellTree::new(bounds, FIRST_HALVINGS);
         Self {
-            places: vec![0; tree.cells() as usize * FRAME_CLASSES],
+            insights: Insights::nothing(tree.cells() as usize * FRAME_CLASSES),
             tree,
-            insights: vec![Insight::NONE],
             lessons: 0,
             pixels: PixelKnowledge::default(),
             film,
@@ -103,13 +118,19 @@ impl Knowledge {
     /// Which insight belongs to an address.
     #[inline(always)]
     pub fn insight_number(&self, address: u32) -> u32 {
-        self.places[address as usize]
+        self.insights.places[address as usize]
     }
 
     /// Insight number `number`.
     #[inline(always)]
     pub fn insight(&self, number: u32) -> &Insight {
-        &self.insights[number as usize]
+        &self.insights.of_paths[number as usize]
+    }
+
+    /// By how much the light of each group differs from what is guessed, where insight number `number` is.
+    #[inline(always)]
+    pub fn group_weights(&self, number: u32) -> &GroupWeights {
+        &self.insights.of_lights[number as usize]
     }
 
     /// What was observed so far, to be added to while this is asked; it is to be [given back](Self::give_back).
@@ -125,7 +146,7 @@ impl Knowledge {
     /// Learns from all observations so far.
     pub fn learn(&mut self) {
         self.experience.refine(&mut self.tree);
-        (self.places, self.insights) = self.experience.insights(&self.tree);
+        self.insights = self.experience.insights(&self.tree);
         self.pixels = PixelKnowledge::new(self.experience.pixels(), self.film);
         self.lessons += 1;
     }

@@ -30,6 +30,7 @@ pub mod square_warp;
 pub use cell_tree::CellTree;
 pub use experience::Experience;
 pub use gathering::{Gathering, Observations};
+use knowledge::Insights;
 pub use knowledge::{Insight, Knowledge};
 pub use mixture::{GuidedShare, MixedDirection, Odds};
 pub use observation::{LightObservation, Observation, PixelObservation};

@@ -7,7 +7,6 @@ use multiversion::multiversion;
 
 use super::batch::{CameraPaths, Segments, Vertices};
 use super::engine::Engine;
-use super::light_chunk::group_weights;
 use super::lineage::Generation;
 use super::settings::DirectLight;
 use super::surface::SurfaceChunk;
@@ -233,7 +232,7 @@ impl Engine {
         }
         let chosen_with = match segments.origins.get(i) {
             Some(origin) => {
-                let weights = group_weights(knowledge, origin.insight);
+                let weights = knowledge.map(|knowledge| knowledge.group_weights(origin.insight));
                 self.light_choice
                     .probability(&origin.receiver, weights, emitted.emitter)
             }

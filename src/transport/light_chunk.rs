@@ -10,7 +10,7 @@ use super::offset::leave_surface;
 use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::learning::Knowledge;
-use crate::scene::{ChosenGroup, Emitter, GroupWeights, LightSample, Parallelogram};
+use crate::scene::{ChosenGroup, Emitter, LightSample, Parallelogram};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Light drawn for a chunk of vertices, one lane each.
@@ -34,12 +34,6 @@ pub(super) struct LightChunk<C: Colour> {
     pub pdf: [f32; CHUNK],
     /// Radiance over density, or what stands for it with a light that is a point.
     pub weight: [C::Spectrum; CHUNK],
-}
-
-/// What was learned of groups of lights at a place with that `insight` (see [`Knowledge::insight`]).
-#[inline(always)]
-pub(super) fn group_weights(knowledge: Option<&Knowledge>, insight: u32) -> Option<&GroupWeights> {
-    knowledge.map(|knowledge| &knowledge.insight(insight).lights)
 }
 
 /// No emitter.
@@ -164,7 +158,7 @@ impl<C: Colour> LightChunk<C> {
                 continue;
             }
             let Origin { receiver, insight } = vertices.origin(i);
-            let weights = group_weights(knowledge, insight);
+            let weights = knowledge.map(|knowledge| knowledge.group_weights(insight));
             let chosen = engine
                 .light_choice
                 .choose(&receiver, weights, numbers[lane]);

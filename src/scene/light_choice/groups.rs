@@ -14,6 +14,7 @@ const DISTANT_GROUPS: usize = 4;
 
 /// By how much the light of each group differs from what is guessed: positive factors, of which only the proportions matter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[repr(align(32))]
 pub struct GroupWeights(pub [f32; GROUPS]);
 
 impl GroupWeights {
