@@ -69,7 +69,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "NAME")]
     sampler: Option<SamplerKind>,
 
-    /// Whether directions are guided by where light was found to come from [default: off, or on where no strategy is named]
+    /// Whether directions are guided, and lights chosen, by where light was found to come from [default: off, or on where no strategy is named]
     #[arg(long, value_name = "SWITCH", value_enum)]
     guiding: Option<Switch>,
 

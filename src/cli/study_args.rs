@@ -81,7 +81,7 @@ pub struct StudyArgs {
     #[arg(long, value_name = "NAME", default_value_t = SamplerKind::default())]
     sampler: SamplerKind,
 
-    /// Whether directions are guided by where light was found to come from
+    /// Whether directions are guided, and lights chosen, by where light was found to come from
     #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
     guiding: Switch,
 
