@@ -7,7 +7,7 @@ use super::variant::{Scattering, Variant};
 use crate::embree::{Hits, Rays};
 use crate::film::FilmTile;
 use crate::lanes::{CHUNK, VectorColumn};
-use crate::learning::Knowledge;
+use crate::learning::{Knowledge, LightObservation};
 use crate::room::{gather, make_room, resize};
 use crate::sampling::{PixelSequences, Ranks, Sampler, SequencePoint, SolidAnglePdf};
 use crate::scene::{HitCoordinates, Receiver, Refraction};
@@ -39,6 +39,8 @@ pub(super) struct CameraPaths<C: Colour> {
 
 /// Rays on their way to the next vertex.
 pub(super) struct Segments<C: Colour> {
+    /// How often the paths have been scattered before.
+    pub depth: u32,
     /// The camera path that each descends from; those of a pixel stand side by side.
     pub path: Vec<u32>,
     /// Throughput, with the bsdf of the vertex that it left and the compensation for all decisions so far.
@@ -104,8 +106,10 @@ pub(super) struct ShadowRays<C: Colour> {
     pub path: Vec<u32>,
     /// The segment at whose end each starts. Empty but where the render learns.
     pub segment: Vec<u32>,
-    /// Which look at a light each is (see [`Lineage`](super::lineage::Lineage)). Empty likewise.
+    /// The number of each among the looks. Empty likewise.
     pub look: Vec<u32>,
+    /// What was looked at, and what it brings if nothing is in the way. Empty likewise, and where there is no choice of lights.
+    pub looks: Vec<LightObservation>,
     /// What it contributes if nothing is in the way.
     pub contribution: Vec<C::Spectrum>,
     /// The rays themselves, in world space.
@@ -185,6 +189,7 @@ impl<C: Colour> CameraPaths<C> {
 impl<C: Colour> Segments<C> {
     pub fn new() -> Self {
         Self {
+            depth: 0,
             path: Vec::new(),
             throughput: Vec::new(),
             point: Vec::new(),
@@ -201,8 +206,9 @@ impl<C: Colour> Segments<C> {
         self.path.len()
     }
 
-    /// Empties the states and makes room for `count` rays, which the caller sets one by one.
-    pub fn restart(&mut self, count: usize) {
+    /// Empties the states and makes room for `count` rays of paths that have been scattered `depth` times before, which the caller sets one by one.
+    pub fn restart(&mut self, depth: u32, count: usize) {
+        self.depth = depth;
         make_room(&mut self.path, count);
         make_room(&mut self.throughput, count);
         make_room(&mut self.point, count);
@@ -220,6 +226,7 @@ impl<C: Colour> Segments<C> {
 
     /// Becomes those of `source` in another order: number `order[i]` in place i.
     pub fn gather(&mut self, source: &Self, order: &[u32]) {
+        self.depth = source.depth;
         gather(&mut self.path, &source.path, order);
         gather(&mut self.throughput, &source.throughput, order);
         gather(&mut self.point, &source.point, order);
@@ -326,6 +333,7 @@ impl<C: Colour> ShadowRays<C> {
             path: Vec::new(),
             segment: Vec::new(),
             look: Vec::new(),
+            looks: Vec::new(),
             contribution: Vec::new(),
             rays: Rays::default(),
         }
@@ -336,6 +344,7 @@ impl<C: Colour> ShadowRays<C> {
         make_room(&mut self.path, count);
         self.segment.clear();
         self.look.clear();
+        self.looks.clear();
         make_room(&mut self.contribution, count);
         self.rays.resize(count);
     }

@@ -35,7 +35,7 @@ pub(super) fn start<C: Colour, V: Variant>(
     let count = paths.restart(pixels.clone(), job.samples);
     paths.find_sequences(sampler);
     let carries_points = carries_points::<V>(sampler);
-    segments.restart(count);
+    segments.restart(0, count);
     let mut points = [SequencePoint::default(); CHUNK];
     let mut numbers = [[0.0; CHUNK]; 3];
     // A pinhole looks at no point of a lens.

@@ -23,7 +23,7 @@ const SHADOW_END: f32 = 1.0 - 1e-4;
 /// Draws light for every vertex and fills `shadow` with the rays that decide whether it arrives.
 ///
 /// The emitter is chosen by what it can contribute, as far as that is guessed and, where directions are guided, known; a path's contribution is MIS-weighted
-/// against hitting the same light by chance, with as many children as are `expected` of each vertex. What was looked at is added to `looks`.
+/// against hitting the same light by chance, with as many children as are `expected` of each vertex.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -35,7 +35,6 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     expected: &[ExpectedCount],
     sampler: &mut Sampler,
     knowledge: Option<&Knowledge>,
-    mut looks: Option<&mut Vec<LightObservation>>,
     shadow: &mut ShadowRays<C>,
 ) {
     let (samples, depth) = (engine.settings.samples, vertices.depth);
@@ -59,15 +58,9 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
         }
         sampler.fill(&points, chunk.len(), Use::Light(depth), numbers.each_mut());
         positions.load(vertices.position.slices(chunk.clone()));
-        lights.draw(
-            engine,
-            paths,
-            vertices,
-            chunk.clone(),
-            &positions,
-            &numbers,
-            knowledge,
-        );
+        let [choice, u, v] = &numbers;
+        lights.choose(engine, vertices, chunk.clone(), choice, knowledge);
+        lights.draw(engine, paths, vertices, chunk.clone(), &positions, [u, v]);
         normals.load(vertices.normal.slices(chunk.clone()));
         V::Scattering::evaluate(
             &vertices.bsdf[chunk.clone()],
@@ -103,12 +96,11 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
             );
         }
         rays.append(&kept, shadow);
-        if let Some(looks) = looks.as_deref_mut() {
+        if !vertices.segment.is_empty() {
             let contributions = &contributions[..expected.len()];
+            let looks = &mut shadow.looks;
             let numbers = note_looks(vertices, start, &lights, contributions, looks);
             shadow.look.extend(kept.iter().map(|lane| numbers[lane]));
-        }
-        if !vertices.segment.is_empty() {
             let segments = kept.iter().map(|lane| vertices.segment[start + lane]);
             shadow.segment.extend(segments);
         }
@@ -256,9 +248,12 @@ pub(super) fn add_unoccluded<C: Colour>(
     lineage: Option<&mut Lineage>,
 ) {
     if let Some(lineage) = lineage {
+        let looks = &mut lineage.observed.lights;
+        let first = looks.len();
+        looks.extend_from_slice(&shadow.looks);
         for (i, &look) in shadow.look.iter().enumerate() {
             if shadow.rays.occluded(i) {
-                lineage.observed.lights[look as usize].value = 0.0;
+                looks[first + look as usize].value = 0.0;
             }
         }
         if let Some(generation) = lineage.youngest() {

@@ -21,7 +21,7 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
 /// those that met a surface which scatters light, in the order of the segments.
 ///
-/// The segments have been scattered `depth` times before; at the last depth paths end.
+/// At the last depth paths end.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -32,14 +32,13 @@ pub(super) fn arrive<C: Colour, V: Variant>(
     segments: &Segments<C>,
     vertices: &mut Vertices<C, V>,
     sampler: &mut Sampler,
-    depth: u32,
     mut generation: Option<&mut Generation>,
     knowledge: Option<&Knowledge>,
 ) {
+    let depth = segments.depth;
     vertices.restart(depth, segments.len());
     let max_depth = engine.settings.max_depth;
     let scatters = max_depth.is_none_or(|max_depth| depth + 1 < max_depth);
-    let hides_surroundings = depth == 0 && engine.settings.hide_emitters;
     let has_instances = V::INSTANCES && !engine.scene.instances.is_empty();
     if has_instances {
         make_room(&mut vertices.clearance, segments.len());
@@ -63,7 +62,6 @@ pub(super) fn arrive<C: Colour, V: Variant>(
             segments,
             &surfaces,
             chunk.clone(),
-            hides_surroundings,
             generation.as_deref_mut(),
             knowledge,
         );
@@ -74,7 +72,6 @@ pub(super) fn arrive<C: Colour, V: Variant>(
             engine,
             paths,
             segments,
-            depth,
             chunk,
             surfaces: &surfaces,
             cosines: &sides.cosine,
@@ -119,10 +116,11 @@ fn add_emission<C: Colour>(
     segments: &Segments<C>,
     surfaces: &SurfaceChunk,
     chunk: Range<usize>,
-    hides_surroundings: bool,
     mut generation: Option<&mut Generation>,
     knowledge: Option<&Knowledge>,
 ) {
+    let hides_surroundings = segments.depth == 0 && engine.settings.hide_emitters;
+    let surroundings = engine.surroundings.filter(|_| !hides_surroundings);
     let wavelengths = &paths.wavelengths;
     let radiances = &mut paths.radiance;
     let mut add = |i: usize, path: usize, light: C::Spectrum| {
@@ -136,17 +134,14 @@ fn add_emission<C: Colour>(
         let wavelengths = &wavelengths[path];
         let direction = Vec3::from(segments.rays.direction(i));
         let emitted = match surfaces.shapes[lane] {
-            None => {
-                let surroundings = engine.surroundings.filter(|_| !hides_surroundings);
-                surroundings.map(|emitter| {
-                    let light = &engine.scene.emitters[emitter];
-                    Emitted {
-                        emitter,
-                        radiance: light.surrounding_radiance::<C>(direction, wavelengths),
-                        light_pdf: light.surrounding_pdf(direction),
-                    }
-                })
-            }
+            None => surroundings.map(|emitter| {
+                let light = &engine.scene.emitters[emitter];
+                Emitted {
+                    emitter,
+                    radiance: light.surrounding_radiance::<C>(direction, wavelengths),
+                    light_pdf: light.surrounding_pdf(direction),
+                }
+            }),
             Some(shape) => {
                 let emitter = shape.emitter.map(EmitterId::index);
                 emitter.and_then(|emitter| {

@@ -91,54 +91,9 @@ impl<C: Colour> LightChunk<C> {
         }
     }
 
-    /// Draws light for the vertices `chunk`, whose positions are `positions`, from three uniform numbers in [0, 1) each:
-    /// one chooses the emitter, by what guiding goes by, if it does, two a point of it.
+    /// Chooses an emitter for every vertex of `chunk` from a uniform number in [0, 1) each, and by what is known of lights where directions are guided.
     #[inline(always)]
-    pub fn draw<V: Variant>(
-        &mut self,
-        engine: &Engine,
-        paths: &CameraPaths<C>,
-        vertices: &Vertices<C, V>,
-        chunk: Range<usize>,
-        positions: &VectorLanes<CHUNK>,
-        numbers: &[[f32; CHUNK]; 3],
-        knowledge: Option<&Knowledge>,
-    ) {
-        let emitters = &engine.scene.emitters;
-        let [choice, u, v] = numbers;
-        self.choose(engine, vertices, chunk.clone(), choice, knowledge);
-        // With one lamp, what was chosen is what is there.
-        if self.emitter != self.lamps.emitter {
-            self.fetch_lamps(engine);
-        }
-        self.draw_lamps(positions, u, v);
-        for (lane, i) in chunk.enumerate() {
-            let path = vertices.path[i] as usize;
-            if !vertices.bsdf[i].has_smooth_lobe() {
-                self.put(lane, positions.get(lane), None);
-                continue;
-            }
-            let chosen = self.emitter[lane] as usize;
-            let emitter = &emitters[chosen];
-            match emitter {
-                Emitter::Area(_) if engine.lamp(chosen).is_some() => {
-                    let radiance = engine.emission.radiance(paths, path, chosen);
-                    self.weight[lane] = radiance * self.lamps.weight[lane];
-                }
-                _ => {
-                    let (position, u) = (positions.get(lane), [u[lane], v[lane]]);
-                    let shapes = &engine.scene.shapes;
-                    let wavelengths = &paths.wavelengths[path];
-                    let sample = emitter.sample::<C>(shapes, position, wavelengths, u);
-                    self.put(lane, position, sample.as_ref());
-                }
-            }
-        }
-    }
-
-    /// Chooses an emitter for every vertex of `chunk` from a uniform number each.
-    #[inline(always)]
-    fn choose<V: Variant>(
+    pub fn choose<V: Variant>(
         &mut self,
         engine: &Engine,
         vertices: &Vertices<C, V>,
@@ -166,6 +121,47 @@ impl<C: Colour> LightChunk<C> {
                 self.emitter[lane] = chosen.emitter as u32;
                 self.probability[lane] = chosen.probability;
                 self.group[lane] = chosen.group;
+            }
+        }
+    }
+
+    /// Draws a point of the emitter chosen for each of the vertices `chunk`, whose positions are `positions`, from two uniform numbers in [0, 1) each.
+    #[inline(always)]
+    pub fn draw<V: Variant>(
+        &mut self,
+        engine: &Engine,
+        paths: &CameraPaths<C>,
+        vertices: &Vertices<C, V>,
+        chunk: Range<usize>,
+        positions: &VectorLanes<CHUNK>,
+        [u, v]: [&[f32; CHUNK]; 2],
+    ) {
+        let emitters = &engine.scene.emitters;
+        // With one lamp, what was chosen is what is there.
+        if self.emitter != self.lamps.emitter {
+            self.fetch_lamps(engine);
+        }
+        self.draw_lamps(positions, u, v);
+        for (lane, i) in chunk.enumerate() {
+            let path = vertices.path[i] as usize;
+            if !vertices.bsdf[i].has_smooth_lobe() {
+                self.put(lane, positions.get(lane), None);
+                continue;
+            }
+            let chosen = self.emitter[lane] as usize;
+            let emitter = &emitters[chosen];
+            match emitter {
+                Emitter::Area(_) if engine.lamp(chosen).is_some() => {
+                    let radiance = engine.emission.radiance(paths, path, chosen);
+                    self.weight[lane] = radiance * self.lamps.weight[lane];
+                }
+                _ => {
+                    let (position, u) = (positions.get(lane), [u[lane], v[lane]]);
+                    let shapes = &engine.scene.shapes;
+                    let wavelengths = &paths.wavelengths[path];
+                    let sample = emitter.sample::<C>(shapes, position, wavelengths, u);
+                    self.put(lane, position, sample.as_ref());
+                }
             }
         }
     }

@@ -177,7 +177,7 @@ mod tests {
         let mut paths = CameraPaths::<Rgb>::new();
         paths.restart(0..1, 2);
         let mut segments = Segments::<Rgb>::new();
-        segments.restart(2);
+        segments.restart(0, 2);
         first_births(&mut segments.births, 2);
         segments.path.extend([0, 1]);
         let mut lineage = Lineage::default();
@@ -201,7 +201,7 @@ mod tests {
         let mut paths = CameraPaths::<Rgb>::new();
         paths.restart(0..1, 1);
         let mut segments = Segments::<Rgb>::new();
-        segments.restart(1);
+        segments.restart(0, 1);
         first_births(&mut segments.births, 1);
         segments.path.push(0);
         let mut lineage = Lineage::default();

@@ -172,7 +172,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 &self.segments,
                 &mut self.vertices,
                 sampler,
-                depth,
                 job.learns.then(|| self.lineage.youngest()).flatten(),
                 guide,
             );
@@ -207,7 +206,6 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                     self.decision.offspring.expected_counts(),
                     sampler,
                     guide,
-                    job.learns.then_some(&mut self.lineage.observed.lights),
                     &mut self.shadow,
                 );
                 stopwatch.lap(Stage::Direct, &mut self.statistics.stages);

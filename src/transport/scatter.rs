@@ -30,7 +30,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     segments: &mut Segments<C>,
 ) {
     let depth = vertices.depth;
-    segments.restart(children.len());
+    segments.restart(depth + 1, children.len());
     let light_is_chosen = engine.light_choice.depends_on_surface();
     if light_is_chosen {
         segments.remember_origins(children.len());

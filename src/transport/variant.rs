@@ -45,8 +45,6 @@ pub(super) struct Arrivals<'a, C: Colour> {
     pub paths: &'a CameraPaths<C>,
     /// The paths that arrive, of which the chunk is a part.
     pub segments: &'a Segments<C>,
-    /// How often they have been scattered before.
-    pub depth: u32,
     /// Which of the segments these are, at most [`CHUNK`].
     pub chunk: Range<usize>,
     /// What they have hit.
@@ -107,7 +105,7 @@ impl<C: Colour> Arrival<'_, C> {
     /// How often it has been scattered before.
     #[inline]
     pub fn depth(&self) -> u32 {
-        self.all.depth
+        self.all.segments.depth
     }
 
     /// The point that was hit.
