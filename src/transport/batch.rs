@@ -106,9 +106,9 @@ pub(super) struct ShadowRays<C: Colour> {
     pub path: Vec<u32>,
     /// The segment at whose end each starts. Empty but where the render learns.
     pub segment: Vec<u32>,
-    /// The number of each among the looks. Empty likewise.
+    /// The number of each among the looks. Empty but where it learns, and chooses lights by what it knows.
     pub look: Vec<u32>,
-    /// What was looked at, and what it brings if nothing is in the way. Empty likewise, and where there is no choice of lights.
+    /// What was looked at, and what it brings if nothing is in the way. Empty likewise.
     pub looks: Vec<LightObservation>,
     /// What it contributes if nothing is in the way.
     pub contribution: Vec<C::Spectrum>,

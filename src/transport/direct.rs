@@ -38,6 +38,7 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
     shadow: &mut ShadowRays<C>,
 ) {
     let (samples, depth) = (engine.settings.samples, vertices.depth);
+    let chooses_by_what_is_known = knowledge.is_some() && engine.light_choice.depends_on_surface();
     shadow.restart(vertices.len() * samples.emitters as usize);
     let mut numbers = [[0.0; CHUNK]; 3];
     let mut positions = VectorLanes::default();
@@ -97,10 +98,12 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
         }
         rays.append(&kept, shadow);
         if !vertices.segment.is_empty() {
-            let contributions = &contributions[..expected.len()];
-            let looks = &mut shadow.looks;
-            let numbers = note_looks(vertices, start, &lights, contributions, looks);
-            shadow.look.extend(kept.iter().map(|lane| numbers[lane]));
+            if chooses_by_what_is_known {
+                let contributions = &contributions[..expected.len()];
+                let looks = &mut shadow.looks;
+                let numbers = note_looks(vertices, start, &lights, contributions, looks);
+                shadow.look.extend(kept.iter().map(|lane| numbers[lane]));
+            }
             let segments = kept.iter().map(|lane| vertices.segment[start + lane]);
             shadow.segment.extend(segments);
         }
