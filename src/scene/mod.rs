@@ -35,7 +35,8 @@ pub use error::{Location, SceneError};
 pub use image_file::{Channels, Encoding, ImageFile, ImageFileError};
 pub use integrators::{PathIntegrator, SurfaceSamples};
 pub use light_choice::{
-    ChosenGroup, ChosenLight, Cone, GROUPS, GroupWeights, LightBounds, LightChoice, Receiver,
+    ChosenGroup, ChosenLight, Cone, GROUPS, GroupWeights, LightBounds, LightChoice, LightQuestion,
+    Receiver,
 };
 pub use load::LoadOptions;
 pub(crate) use sensors::CameraRayLanes;

@@ -8,9 +8,9 @@ use super::batch::{CameraPaths, Origin, Vertices};
 use super::engine::Engine;
 use super::offset::leave_surface;
 use super::variant::{Scattering, Variant};
-use crate::lanes::{CHUNK, VectorLanes};
+use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::learning::Knowledge;
-use crate::scene::{ChosenGroup, Emitter, LightSample, Parallelogram};
+use crate::scene::{ChosenGroup, Emitter, LightQuestion, LightSample, Parallelogram};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Light drawn for a chunk of vertices, one lane each.
@@ -106,17 +106,25 @@ impl<C: Colour> LightChunk<C> {
             self.probability = [1.0; CHUNK];
             return;
         }
+        self.probability = [0.0; CHUNK];
+        self.group = [None; CHUNK];
+        let mut asking = KeptLanes::none();
+        let mut questions = [LightQuestion::default(); CHUNK];
         for (lane, i) in chunk.enumerate() {
-            self.probability[lane] = 0.0;
-            self.group[lane] = None;
-            if !vertices.bsdf[i].has_smooth_lobe() {
-                continue;
-            }
             let Origin { receiver, insight } = vertices.origin(i);
-            let weights = knowledge.map(|knowledge| knowledge.group_weights(insight));
-            let chosen = engine
-                .light_choice
-                .choose(&receiver, weights, numbers[lane]);
+            questions[asking.len()] = LightQuestion {
+                receiver,
+                weights: knowledge.map(|knowledge| knowledge.group_weights(insight)),
+                u: numbers[lane],
+            };
+            asking.add_if(lane, vertices.bsdf[i].has_smooth_lobe());
+        }
+        let mut chosen = [None; CHUNK];
+        let chosen = &mut chosen[..asking.len()];
+        engine
+            .light_choice
+            .choose(&questions[..asking.len()], chosen);
+        for (lane, chosen) in asking.iter().zip(chosen) {
             if let Some(chosen) = chosen {
                 self.emitter[lane] = chosen.emitter as u32;
                 self.probability[lane] = chosen.probability;

@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::branch::PlacedLight;
-use super::tree::{Child, Leaf, LightTree, WIDTH, pick};
-use super::{BELOW_ONE, ChosenLight, Receiver};
+use super::tree::{Child, Descent, LightTree, WIDTH, pick};
+use super::{BELOW_ONE, ChosenLight, LightQuestion, Receiver};
+use crate::lanes::{CHUNK, KeptLanes};
 
 /// How many groups there are at the most: the children of the tree's root, and what is infinitely far away.
 pub const GROUPS: usize = WIDTH;
@@ -38,7 +39,7 @@ pub struct ChosenGroup {
 pub struct LightGroups {
     tree: Option<LightTree>,
     /// Those that are infinitely far away: one group each, the last ones the last group together.
-    distant: Vec<usize>,
+    distant: Vec<u32>,
     /// The first group of those.
     first_distant: usize,
     /// The probability of each of those, and of the tree, by what is guessed alone.
@@ -57,7 +58,7 @@ struct Shares {
 
 impl LightGroups {
     /// The groups of `distant` emitters and of the `placed` ones; there is at least one.
-    pub fn new(distant: Vec<usize>, placed: Vec<PlacedLight>) -> Self {
+    pub fn new(distant: Vec<u32>, placed: Vec<PlacedLight>) -> Self {
         let first_distant = GROUPS - distant.len().min(DISTANT_GROUPS);
         let tree = LightTree::new(placed, first_distant);
         let choices = distant.len() + usize::from(tree.is_some());
@@ -98,48 +99,59 @@ impl LightGroups {
         (sum > 0.0).then_some(Shares { guessed, chosen })
     }
 
-    /// See [`LightChoice::choose`](super::LightChoice::choose).
+    /// See [`LightChoice::choose`](super::LightChoice::choose), for at most [`CHUNK`] surfaces.
+    ///
+    /// All go down the tree side by side, node by node: how many nodes each has to go is not foreseen, but no other waits for it.
     #[inline(always)]
-    pub fn choose(
-        &self,
-        receiver: &Receiver,
-        weights: Option<&GroupWeights>,
-        u: f32,
-    ) -> Option<ChosenLight> {
-        let (entry, group) = match weights {
-            Some(weights) => {
-                let (entry, group) = self.enter_weighed(receiver, weights, u)?;
-                (entry, Some(group))
+    pub fn choose(&self, questions: &[LightQuestion<'_>], chosen: &mut [Option<ChosenLight>]) {
+        let mut descents = [Descent::NONE; CHUNK];
+        let mut groups = [None; CHUNK];
+        for (i, question) in questions.iter().enumerate() {
+            match question.weights {
+                Some(weights) => {
+                    (descents[i], groups[i]) = self.enter_weighed(question, weights);
+                }
+                None => descents[i] = self.enter(question.u),
             }
-            None => (self.enter(u), None),
-        };
-        let leaf = match (entry, &self.tree) {
-            (Entry::Distant(leaf), _) => leaf,
-            (Entry::Tree(child, probability, u), Some(tree)) => {
-                tree.choose(child, probability, receiver, u)?
+        }
+        if let Some(tree) = &self.tree {
+            let mut going = KeptLanes::none();
+            for (i, descent) in descents[..questions.len()].iter().enumerate() {
+                going.add_if(i, descent.goes_on());
             }
-            (Entry::Tree(..), None) => return None,
-        };
-        Some(ChosenLight {
-            emitter: leaf.emitter,
-            probability: leaf.probability,
-            remainder: leaf.remainder,
-            group,
-        })
+            while going.len() > 0 {
+                let mut left = KeptLanes::none();
+                for i in going.iter() {
+                    tree.step(&mut descents[i], &questions[i].receiver);
+                    left.add_if(i, descents[i].goes_on());
+                }
+                going = left;
+            }
+        }
+        for (i, chosen) in chosen.iter_mut().enumerate() {
+            let descent = descents[i];
+            *chosen = match descent.child {
+                Child::Emitter(emitter) => Some(ChosenLight {
+                    emitter: emitter as usize,
+                    probability: descent.probability,
+                    remainder: descent.u,
+                    group: groups[i],
+                }),
+                _ => None,
+            };
+        }
     }
 
     /// Chooses by what is guessed alone; the tree need not be asked for that.
     #[inline(always)]
-    fn enter(&self, u: f32) -> Entry {
+    fn enter(&self, u: f32) -> Descent {
         let choices = self.distant.len() + usize::from(self.tree.is_some());
-        let (index, remainder) = pick_evenly(choices, u);
-        match self.distant.get(index) {
-            Some(&emitter) => Entry::Distant(Leaf {
-                emitter,
-                probability: self.each,
-                remainder,
-            }),
-            None => Entry::Tree(LightTree::ROOT, self.each, remainder),
+        let (index, u) = pick_evenly(choices, u);
+        let distant = self.distant.get(index);
+        Descent {
+            child: distant.map_or(LightTree::ROOT, |&light| Child::Emitter(light)),
+            probability: self.each,
+            u,
         }
     }
 
@@ -147,36 +159,39 @@ impl LightGroups {
     #[inline(always)]
     fn enter_weighed(
         &self,
-        receiver: &Receiver,
+        question: &LightQuestion<'_>,
         weights: &GroupWeights,
-        u: f32,
-    ) -> Option<(Entry, ChosenGroup)> {
-        let shares = self.shares(receiver, weights)?;
-        let (number, u) = pick(&shares.chosen, u);
+    ) -> (Descent, Option<ChosenGroup>) {
+        let Some(shares) = self.shares(&question.receiver, weights) else {
+            return (Descent::NONE, None);
+        };
+        let (number, u) = pick(&shares.chosen, question.u);
         let group = ChosenGroup {
             number: number as u8,
             guessed: shares.guessed[number],
             chosen: shares.chosen[number],
         };
-        let entry = match &self.tree {
-            Some(tree) if number < self.first_distant => {
-                Entry::Tree(tree.below_root(number), group.chosen, u)
-            }
+        let descent = match &self.tree {
+            Some(tree) if number < self.first_distant => Descent {
+                child: tree.below_root(number),
+                probability: group.chosen,
+                u,
+            },
             _ => {
                 let lights = self.distant_group(number);
-                let (index, remainder) = pick_evenly(lights.len(), u);
-                Entry::Distant(Leaf {
-                    emitter: lights[index],
+                let (index, u) = pick_evenly(lights.len(), u);
+                Descent {
+                    child: Child::Emitter(lights[index]),
                     probability: group.chosen / lights.len() as f32,
-                    remainder,
-                })
+                    u,
+                }
             }
         };
-        Some((entry, group))
+        (descent, Some(group))
     }
 
     /// The lights of a group of those that are infinitely far away.
-    fn distant_group(&self, group: usize) -> &[usize] {
+    fn distant_group(&self, group: usize) -> &[u32] {
         let index = group - self.first_distant;
         if group == GROUPS - 1 {
             &self.distant[index..]
@@ -216,7 +231,11 @@ impl LightGroups {
 
     /// The same for what is not in the tree.
     fn distant_probability(&self, emitter: usize, shares: Option<&[f32; GROUPS]>) -> f32 {
-        let Some(index) = self.distant.iter().position(|&light| light == emitter) else {
+        let Some(index) = self
+            .distant
+            .iter()
+            .position(|&light| light as usize == emitter)
+        else {
             return 0.0;
         };
         let group = (self.first_distant + index).min(GROUPS - 1);
@@ -224,14 +243,6 @@ impl LightGroups {
             |shares: &[f32; GROUPS]| shares[group] / self.distant_group(group).len() as f32;
         shares.map_or(self.each, in_group)
     }
-}
-
-/// What was chosen first.
-enum Entry {
-    /// A light that is infinitely far away.
-    Distant(Leaf),
-    /// Lights of the tree, with which probability, and what is left of the uniform number.
-    Tree(Child, f32, f32),
 }
 
 /// One of `count` things, all of which are as likely, by `u`, uniform in [0, 1), and what is left of that.

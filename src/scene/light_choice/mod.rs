@@ -19,6 +19,7 @@ use glam::Vec3;
 
 use super::Shape;
 use super::emitters::Emitter;
+use crate::lanes::CHUNK;
 use branch::PlacedLight;
 use emitters::Place;
 use groups::LightGroups;
@@ -37,7 +38,7 @@ enum Kind {
 }
 
 /// A surface to which light is to be found.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Receiver {
     /// Position in world space.
     pub position: Vec3,
@@ -45,6 +46,17 @@ pub struct Receiver {
     pub normal: Vec3,
     /// Whether light that arrives on the other side can be scattered to this one.
     pub scatters_below: bool,
+}
+
+/// For which surface an emitter is to be chosen, and from what.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LightQuestion<'a> {
+    /// The surface.
+    pub receiver: Receiver,
+    /// By what the guess of each group is to be multiplied, if anything is known of that.
+    pub weights: Option<&'a GroupWeights>,
+    /// A uniform number in [0, 1).
+    pub u: f32,
 }
 
 /// An emitter chosen for a surface.
@@ -67,7 +79,7 @@ impl LightChoice {
         let mut placed: Vec<PlacedLight> = Vec::new();
         for (index, emitter) in emitters.iter().enumerate() {
             match Place::of(emitter, shapes) {
-                Some(Place::Distant) => distant.push(index),
+                Some(Place::Distant) => distant.push(index as u32),
                 Some(Place::Near(bounds)) => placed.push(PlacedLight {
                     emitter: index as u32,
                     bounds,
@@ -77,7 +89,7 @@ impl LightChoice {
         }
         Self(match (&distant[..], &placed[..]) {
             ([], []) => Kind::None,
-            (&[only], []) => Kind::Only(only),
+            (&[only], []) => Kind::Only(only as usize),
             ([], [only]) => Kind::Only(only.emitter as usize),
             _ => {
                 let greatest = placed
@@ -109,28 +121,31 @@ impl LightChoice {
         matches!(self.0, Kind::Several(_))
     }
 
-    /// Chooses an emitter for a surface from the uniform number `u` in [0, 1), where what is guessed of groups is to be multiplied by `weights`, if
-    /// there are any. `None` where no light can arrive.
+    /// Chooses an emitter for each of many surfaces; `None` where no light can arrive. `chosen` is to be as long as `questions`.
     #[inline(always)]
-    pub fn choose(
-        &self,
-        receiver: &Receiver,
-        weights: Option<&GroupWeights>,
-        u: f32,
-    ) -> Option<ChosenLight> {
+    pub fn choose(&self, questions: &[LightQuestion<'_>], chosen: &mut [Option<ChosenLight>]) {
         match &self.0 {
-            Kind::None => None,
-            &Kind::Only(emitter) => Some(ChosenLight {
-                emitter,
-                probability: 1.0,
-                remainder: u,
-                group: None,
-            }),
-            Kind::Several(groups) => groups.choose(receiver, weights, u),
+            Kind::None => chosen.fill(None),
+            &Kind::Only(emitter) => {
+                for (question, chosen) in questions.iter().zip(chosen) {
+                    *chosen = Some(ChosenLight {
+                        emitter,
+                        probability: 1.0,
+                        remainder: question.u,
+                        group: None,
+                    });
+                }
+            }
+            Kind::Several(groups) => {
+                let chunks = questions.chunks(CHUNK).zip(chosen.chunks_mut(CHUNK));
+                for (questions, chosen) in chunks {
+                    groups.choose(questions, chosen);
+                }
+            }
         }
     }
 
-    /// The probability with which [`Self::choose`] chooses `emitter` for the same surface.
+    /// The probability with which [`Self::choose`] chooses `emitter` for the same surface and weights.
     #[inline(always)]
     pub fn probability(
         &self,

@@ -27,6 +27,26 @@ fn choice(scene: &Scene) -> LightChoice {
     LightChoice::new(&scene.emitters, &scene.shapes)
 }
 
+/// Chooses for one surface.
+fn choose(
+    choice: &LightChoice,
+    receiver: &Receiver,
+    weights: Option<&GroupWeights>,
+    u: f32,
+) -> Option<ChosenLight> {
+    let mut chosen = [None];
+    let receiver = *receiver;
+    choice.choose(
+        &[LightQuestion {
+            receiver,
+            weights,
+            u,
+        }],
+        &mut chosen,
+    );
+    chosen[0]
+}
+
 const POINT: &str = r#"<emitter type="point"/>"#;
 const DIRECTIONAL: &str = r#"<emitter type="directional"/>"#;
 
@@ -96,7 +116,7 @@ const UPWARDS: Receiver = Receiver {
 fn without_a_choice_there_is_nothing_to_choose() {
     let none = choice(&scene(""));
     assert!(!none.depends_on_surface());
-    assert_eq!(none.choose(&UPWARDS, None, 0.25), None);
+    assert_eq!(choose(&none, &UPWARDS, None, 0.25), None);
     assert_eq!(none.probability(&UPWARDS, None, 0), 0.0);
     let black = r#"<emitter type="point"><rgb name="intensity" value="0"/></emitter>"#;
     for only in [r#"<emitter type="constant"/>"#, r#"<emitter type="spot"/>"#] {
@@ -108,7 +128,7 @@ fn without_a_choice_there_is_nothing_to_choose() {
             remainder: 0.25,
             group: None,
         };
-        assert_eq!(only.choose(&UPWARDS, None, 0.25), Some(chosen));
+        assert_eq!(choose(&only, &UPWARDS, None, 0.25), Some(chosen));
         assert_eq!(only.probability(&UPWARDS, None, 0), 0.0);
         assert_eq!(only.probability(&UPWARDS, None, 1), 1.0);
     }
@@ -151,7 +171,7 @@ fn choices_follow_their_probabilities() {
             let mut nothing = 0.0;
             for _ in 0..DRAWS {
                 let u = random.uniform();
-                let Some(chosen) = choice.choose(&receiver, weights, u) else {
+                let Some(chosen) = choose(&choice, &receiver, weights, u) else {
                     nothing += 1.0;
                     continue;
                 };
@@ -225,7 +245,7 @@ fn groups_are_weighed() {
     let weights = Some(&weights);
     let mut chosen_of = [None; 8];
     for i in 0..1000 {
-        let chosen = choice.choose(&receiver, weights, i as f32 / 1000.0);
+        let chosen = choose(&choice, &receiver, weights, i as f32 / 1000.0);
         let chosen = chosen.expect("light arrives from everywhere");
         chosen_of[chosen.emitter] = chosen.group;
     }
@@ -324,7 +344,7 @@ fn the_right_lamps_are_chosen() {
             })
         };
         let v = random.uniform();
-        if let Some(chosen) = choice.choose(&receiver, None, v) {
+        if let Some(chosen) = choose(&choice, &receiver, None, v) {
             let value = arrives(chosen.emitter) / f64::from(chosen.probability);
             mean += value / DRAWS as f64;
             squares += value * value / DRAWS as f64;

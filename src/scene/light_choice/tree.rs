@@ -95,37 +95,26 @@ impl LightTree {
         self.ways.get(emitter)?.as_deref()
     }
 
-    /// Chooses one of the lights of a `child`, which was itself chosen with that `probability`, for a surface from `u` in [0, 1). `None` where none of these can
-    /// arrive.
+    /// Goes down one node: to one of its children, for a surface.
     #[inline(always)]
-    pub fn choose(
-        &self,
-        mut child: Child,
-        mut probability: f32,
-        receiver: &Receiver,
-        mut u: f32,
-    ) -> Option<Leaf> {
-        loop {
-            let node = match child {
-                Child::Node(node) => &self.nodes[node as usize],
-                Child::Emitter(emitter) => {
-                    return Some(Leaf {
-                        emitter: emitter as usize,
-                        probability,
-                        remainder: u,
-                    });
-                }
-                Child::None => return None,
-            };
-            let shares = node.shares(receiver)?;
-            let lane;
-            (lane, u) = pick(&shares, u);
-            probability *= shares[lane];
-            child = node.children[lane];
-        }
+    pub fn step(&self, descent: &mut Descent, receiver: &Receiver) {
+        let Child::Node(node) = descent.child else {
+            return;
+        };
+        let node = &self.nodes[node as usize];
+        let Some(shares) = node.shares(receiver) else {
+            descent.child = Child::None;
+            return;
+        };
+        let (lane, remainder) = pick(&shares, descent.u);
+        *descent = Descent {
+            child: node.children[lane],
+            probability: descent.probability * shares[lane],
+            u: remainder,
+        };
     }
 
-    /// The probability with which [`Self::choose`] chooses the emitter at the end of the `way` from that `child`.
+    /// The probability with which [`Self::step`] comes to the end of the `way` from a `child`, which was itself chosen with that `probability`.
     #[inline(always)]
     pub fn probability(
         &self,
@@ -149,14 +138,30 @@ impl LightTree {
     }
 }
 
-/// A light chosen in a tree.
-pub struct Leaf {
-    /// Its number among the scene's emitters.
-    pub emitter: usize,
-    /// The probability of this choice.
+/// A choice on its way down the tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Descent {
+    /// What was chosen so far.
+    pub child: Child,
+    /// The probability of that.
     pub probability: f32,
     /// What is left of the uniform number, itself uniform in [0, 1).
-    pub remainder: f32,
+    pub u: f32,
+}
+
+impl Descent {
+    /// Nothing can be chosen.
+    pub const NONE: Self = Self {
+        child: Child::None,
+        probability: 0.0,
+        u: 0.0,
+    };
+
+    /// Whether there are nodes to go down to.
+    #[inline(always)]
+    pub fn goes_on(&self) -> bool {
+        matches!(self.child, Child::Node(_))
+    }
 }
 
 /// The lane that `u`, uniform in [0, 1), picks with the probabilities `shares`, of which at least one is positive, and what is left of it.
