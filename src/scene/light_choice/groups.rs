@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::branch::PlacedLight;
-use super::tree::{Child, Descent, LightTree, WIDTH, pick};
+use super::tree::{Child, Descent, LightTree, WIDTH, pick, sum};
 use super::{BELOW_ONE, ChosenLight, LightQuestion, Receiver};
 use crate::lanes::{CHUNK, KeptLanes};
 
@@ -91,12 +91,12 @@ impl LightGroups {
         for (share, weight) in chosen.iter_mut().zip(weights.0) {
             *share *= weight;
         }
-        let sum: f32 = chosen.iter().sum();
-        let per_sum = 1.0 / sum;
+        let total = sum(&chosen);
+        let per_sum = 1.0 / total;
         for share in &mut chosen {
             *share *= per_sum;
         }
-        (sum > 0.0).then_some(Shares { guessed, chosen })
+        (total > 0.0).then_some(Shares { guessed, chosen })
     }
 
     /// See [`LightChoice::choose`](super::LightChoice::choose), for at most [`CHUNK`] surfaces.

@@ -178,22 +178,26 @@ pub fn pick(shares: &[f32; WIDTH], u: f32) -> (usize, f32) {
     (lane, ((u - before) / shares[lane]).min(BELOW_ONE))
 }
 
+/// The sum of all lanes, in pairs: no addition waits for more than two others.
+#[inline(always)]
+pub fn sum(lanes: &[f32; WIDTH]) -> f32 {
+    let [a, b, c, d, e, f, g, h] = lanes;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
+}
+
 impl Node {
     /// The probabilities of the children; `None` where none of their lights can arrive.
     #[inline(always)]
     fn shares(&self, receiver: &Receiver) -> Option<[f32; WIDTH]> {
         let mut shares = self.lights.importances(receiver);
         // Of numbers up to 10^30 eight are no infinite sum.
-        let sum: f32 = shares.iter().sum();
-        let possible: f32 = shares
-            .iter()
-            .map(|&share| f32::from(u8::from(share > 0.0)))
-            .sum();
-        let per_importance = (1.0 - possible * LEAST_SHARE) / sum;
+        let total = sum(&shares);
+        let possible = sum(&shares.map(|share| f32::from(u8::from(share > 0.0))));
+        let per_importance = (1.0 - possible * LEAST_SHARE) / total;
         for share in &mut shares {
             let mixed = *share * per_importance + LEAST_SHARE;
             *share = if *share > 0.0 { mixed } else { 0.0 };
         }
-        (sum > 0.0).then_some(shares)
+        (total > 0.0).then_some(shares)
     }
 }
