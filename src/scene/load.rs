@@ -10,7 +10,7 @@ use super::bsdfs::{self, Material};
 use super::emitters::{self, Emitter};
 use super::error::SceneError;
 use super::integrators::{self, PathIntegrator};
-use super::shapes::{Shape, ShapeGroup};
+use super::shapes::{Planes, Shape, ShapeGroup};
 use super::source::{Source, Sources};
 use super::textures::TextureLoader;
 use super::xml::{self, Class, Document, Object, SceneSource};
@@ -77,6 +77,7 @@ pub(super) struct Loader<'d> {
     pub document: &'d Document,
     pub textures: TextureLoader<'d>,
     shapes: Vec<Shape>,
+    planes: Planes,
     groups: Vec<ShapeGroup>,
     materials: Vec<Material>,
     emitters: Vec<Emitter>,
@@ -98,6 +99,7 @@ impl<'d> Loader<'d> {
             document,
             textures: TextureLoader::new(document),
             shapes: Vec::new(),
+            planes: Planes::of(&[]),
             groups: Vec::new(),
             materials: Vec::new(),
             emitters: Vec::new(),
@@ -141,6 +143,7 @@ impl<'d> Loader<'d> {
         Ok(Scene {
             name,
             shapes: self.shapes,
+            planes: self.planes,
             groups: self.groups,
             instances,
             materials: self.materials,

@@ -50,7 +50,7 @@ pub use shapes::{
     ShapeGroup, ShapeSample, Sphere, SurfaceParameters, SurfacePoint, TriangleAttributes,
     Triangles,
 };
-pub(crate) use shapes::{CornerLanes, Parallelogram, PlaneLanes, SurfaceLanes};
+pub(crate) use shapes::{CornerLanes, Parallelogram, PlaneLanes, Planes, SurfaceLanes};
 pub use source::{Source, Sources};
 pub use textures::{
     AttributeTexture, Bitmap, Checkerboard, FloatTexture, Pattern, SpectrumTexture,
@@ -92,6 +92,8 @@ pub struct Scene {
     pub name: String,
     /// All shapes: first those that stand in the world themselves, then those of the groups.
     pub shapes: Vec<Shape>,
+    /// The planes of those that stand in the world and are shaded flat.
+    pub(crate) planes: Planes,
     /// The groups of shapes that instances show.
     pub groups: Vec<ShapeGroup>,
     /// Where the groups stand in the world.

@@ -15,7 +15,7 @@ use crate::lanes::{CHUNK, VectorLanes};
 use crate::learning::Knowledge;
 use crate::room::make_room;
 use crate::sampling::{Sampler, SolidAnglePdf, power_heuristic};
-use crate::scene::{Emitter, EmitterId};
+use crate::scene::Emitter;
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Adds the emission that every segment meets, MIS-weighted against next-event estimation, and fills `vertices` with
@@ -44,7 +44,7 @@ pub(super) fn arrive<C: Colour, V: Variant>(
         make_room(&mut vertices.clearance, segments.len());
     }
     let mut ranks = sampler.ranks();
-    let mut surfaces = SurfaceChunk::new();
+    let mut surfaces = SurfaceChunk::new(engine);
     let mut sides = SideChunk::new();
     for start in (0..segments.len()).step_by(CHUNK) {
         let chunk = start..segments.len().min(start + CHUNK);
@@ -120,7 +120,6 @@ fn add_emission<C: Colour>(
     knowledge: Option<&Knowledge>,
 ) {
     let hides_surroundings = segments.depth == 0 && engine.settings.hide_emitters;
-    let surroundings = engine.surroundings.filter(|_| !hides_surroundings);
     let wavelengths = &paths.wavelengths;
     let radiances = &mut paths.radiance;
     let mut add = |i: usize, path: usize, light: C::Spectrum| {
@@ -130,35 +129,32 @@ fn add_emission<C: Colour>(
         }
     };
     for (lane, i) in chunk.enumerate() {
+        let Some(emitter) = surfaces.entries[lane].emitter() else {
+            continue;
+        };
         let path = segments.path[i] as usize;
         let wavelengths = &wavelengths[path];
         let direction = Vec3::from(segments.rays.direction(i));
-        let emitted = match surfaces.shapes[lane] {
-            None => surroundings.map(|emitter| {
-                let light = &engine.scene.emitters[emitter];
-                Emitted {
+        let emitted = match (
+            &engine.scene.emitters[emitter],
+            engine.shape(segments, i),
+        ) {
+            (Emitter::Area(light), Some(shape)) => {
+                let point = surfaces.points.get(lane);
+                let parameters = || shape.geometry.parameters(&segments.hit(i), &point);
+                let radiance = light.radiance::<C>(&point, parameters, -direction, wavelengths);
+                let origin = Vec3::from(segments.rays.origin(i));
+                (!radiance.is_black()).then(|| Emitted {
                     emitter,
-                    radiance: light.surrounding_radiance::<C>(direction, wavelengths),
-                    light_pdf: light.surrounding_pdf(direction),
-                }
-            }),
-            Some(shape) => {
-                let emitter = shape.emitter.map(EmitterId::index);
-                emitter.and_then(|emitter| {
-                    let Emitter::Area(light) = &engine.scene.emitters[emitter] else {
-                        return None;
-                    };
-                    let point = surfaces.points.get(lane);
-                    let parameters = || shape.geometry.parameters(&segments.hit(i), &point);
-                    let radiance = light.radiance::<C>(&point, parameters, -direction, wavelengths);
-                    let origin = Vec3::from(segments.rays.origin(i));
-                    (!radiance.is_black()).then(|| Emitted {
-                        emitter,
-                        radiance,
-                        light_pdf: light.pdf(&engine.scene.shapes, origin, &point),
-                    })
+                    radiance,
+                    light_pdf: light.pdf(&engine.scene.shapes, origin, &point),
                 })
             }
+            (light, _) => (!hides_surroundings).then(|| Emitted {
+                emitter,
+                radiance: light.surrounding_radiance::<C>(direction, wavelengths),
+                light_pdf: light.surrounding_pdf(direction),
+            }),
         };
         if let Some(emitted) = emitted {
             let weight = engine.mis_weight(segments, i, &emitted, knowledge);

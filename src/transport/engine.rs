@@ -8,11 +8,12 @@ use super::accelerator::Accelerator;
 use super::batch::Segments;
 use super::emission_table::EmissionTable;
 use super::settings::TransportSettings;
+use super::shape_table::ShapeTable;
 use crate::embree::Version;
 use crate::film::FilterSampler;
 use crate::learning::{Knowledge, Reliance};
 use crate::sampling::{SamplerKind, StreamKey};
-use crate::scene::{CameraView, Emitter, Instance, LightChoice, Parallelogram, Scene};
+use crate::scene::{CameraView, Emitter, Instance, LightChoice, Parallelogram, Scene, Shape};
 use crate::spectrum::Colour;
 use crate::walk::{Scope, Strategy};
 
@@ -26,12 +27,12 @@ pub struct Engine {
     pub(super) filter: FilterSampler,
     /// How next-event estimation chooses among the emitters.
     pub(super) light_choice: LightChoice,
+    /// What paths that arrive ask of shapes first.
+    pub(super) shapes: ShapeTable,
     /// What the emitters emit.
     pub(super) emission: EmissionTable,
     /// The rectangle that an emitter is, by emitter, if it is one.
     lamps: Vec<Option<Parallelogram>>,
-    /// Which emitter surrounds the scene; looked up once, for rays that leave the scene ask for it.
-    pub(super) surroundings: Option<usize>,
     /// Whether all surfaces are matte, so that the variant for those can be used.
     pub(super) is_matte: bool,
 }
@@ -81,7 +82,7 @@ impl Engine {
             camera: scene.camera.view(scene.film.size),
             filter: FilterSampler::new(&scene.film),
             is_matte: scene.is_matte(),
-            surroundings: scene.emitters.iter().position(Emitter::surrounds),
+            shapes: ShapeTable::new(&scene, scene.emitters.iter().position(Emitter::surrounds)),
             light_choice: LightChoice::new(&scene.emitters, &scene.shapes),
             emission: EmissionTable::new(&scene.emitters),
             lamps: scene
@@ -121,6 +122,13 @@ impl Engine {
     pub(super) fn sorts(&self) -> bool {
         self.settings.sampler == SamplerKind::ArrayQmc
             && matches!(self.strategy.scope(), Scope::Particle | Scope::Pixel)
+    }
+
+    /// The shape that segment `i` met, if it met one.
+    #[inline]
+    pub(super) fn shape<C: Colour>(&self, segments: &Segments<C>, i: usize) -> Option<&Shape> {
+        self.accelerator
+            .shape(&self.scene, segments.hits.geometry_id(i))
     }
 
     /// The instance in which segment `i` met a surface, if it did in one.

@@ -27,9 +27,10 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     ) -> KeptLanes {
         let mut kept = KeptLanes::none();
         let mut curves = [&SpectralCurve::BLACK; CHUNK];
-        for (lane, arrival) in arrivals.at_surfaces() {
-            if let Some(reflectance) = arrival.material.matte(arrival.side) {
-                curves[kept.len()] = reflectance;
+        for lane in 0..arrivals.chunk.len() {
+            let entry = arrivals.surfaces.entries[lane];
+            if let Some(reflectance) = entry.reflectance(arrivals.cosines[lane]) {
+                curves[kept.len()] = arrivals.engine.shapes.reflectance(reflectance);
                 kept.add_if(lane, true);
             }
         }

@@ -34,6 +34,7 @@ mod recorded_rays;
 mod remember;
 mod scatter;
 mod settings;
+mod shape_table;
 mod splat;
 mod stages;
 mod statistics;

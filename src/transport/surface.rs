@@ -4,8 +4,10 @@ use std::ops::Range;
 
 use super::batch::Segments;
 use super::engine::Engine;
+use super::shape_table::ShapeEntry;
+use crate::embree::INVALID_GEOMETRY;
 use crate::lanes::{CHUNK, VectorLanes, load};
-use crate::scene::{CornerLanes, Geometry, PlaneLanes, Shape, SurfaceLanes};
+use crate::scene::{CornerLanes, Geometry, PlaneLanes, Planes, Shape, SurfaceLanes};
 use crate::spectrum::Colour;
 
 /// The surface points of a chunk of hits.
@@ -14,10 +16,12 @@ use crate::spectrum::Colour;
 /// chunk is taken in steps: planes of flat triangles and indices of others, vertices, arithmetic. What a step needs is announced a
 /// step before, and the processor fetches it meanwhile; the arithmetic is one loop over lanes.
 pub(super) struct SurfaceChunk<'s> {
-    /// The shapes hit; none by misses.
-    pub shapes: [Option<&'s Shape>; CHUNK],
+    /// The shapes hit.
+    pub entries: [&'s ShapeEntry; CHUNK],
     /// Those of the chunk that follows.
-    next_shapes: [Option<&'s Shape>; CHUNK],
+    next_entries: [&'s ShapeEntry; CHUNK],
+    /// The planes of what it hits that has one, by number.
+    next_planes: [u32; CHUNK],
     /// Of flat triangles in the world.
     planes: PlaneLanes<CHUNK>,
     /// Of all other triangles.
@@ -28,10 +32,12 @@ pub(super) struct SurfaceChunk<'s> {
 }
 
 impl<'s> SurfaceChunk<'s> {
-    pub fn new() -> Self {
+    pub fn new(engine: &'s Engine) -> Self {
+        let miss = engine.shapes.entry(INVALID_GEOMETRY);
         Self {
-            shapes: [None; CHUNK],
-            next_shapes: [None; CHUNK],
+            entries: [miss; CHUNK],
+            next_entries: [miss; CHUNK],
+            next_planes: [Planes::NONE; CHUNK],
             planes: PlaneLanes::default(),
             corners: [None; CHUNK],
             triangles: CornerLanes::default(),
@@ -51,46 +57,50 @@ impl<'s> SurfaceChunk<'s> {
         if chunk.start == 0 {
             self.announce(engine, segments, 0);
         }
-        self.shapes = self.next_shapes;
-        let primitives = &segments.hits.primitive_ids()[chunk.clone()];
+        self.entries = self.next_entries;
         let (mut has_corners, mut has_quadrics) = (false, false);
-        for (lane, &primitive) in primitives.iter().enumerate() {
-            let (mut plane, mut corners) = (None, None);
-            match self.shapes[lane].map(|shape| &shape.geometry) {
+        for (lane, i) in chunk.clone().enumerate() {
+            let plane = engine.scene.planes.get(self.next_planes[lane]);
+            self.planes.set(lane, plane);
+            self.corners[lane] = None;
+            if plane.is_some() {
+                continue;
+            }
+            match engine.shape(segments, i).map(|shape| &shape.geometry) {
                 None => {}
                 Some(Geometry::Triangles(mesh)) => {
-                    plane = mesh.plane(primitive);
-                    if plane.is_none() {
-                        let triangle = mesh.corners(primitive);
-                        mesh.prefetch_vertices(triangle);
-                        corners = Some(triangle);
-                        has_corners = true;
-                    }
+                    let triangle = mesh.corners(segments.hits.primitive_id(i));
+                    mesh.prefetch_vertices(triangle);
+                    self.corners[lane] = Some(triangle);
+                    has_corners = true;
                 }
                 Some(_) => has_quadrics = true,
             }
-            self.planes.set(lane, plane);
-            self.corners[lane] = corners;
         }
         self.announce(engine, segments, chunk.end);
         if has_corners {
-            self.interpolate(segments, chunk.clone());
+            self.interpolate(engine, segments, chunk.clone());
         }
         self.meet_planes(segments, chunk.clone());
         if has_quadrics {
-            self.locate_quadrics(segments, chunk);
+            self.locate_quadrics(engine, segments, chunk);
         }
     }
 
     /// Finds the points of triangles that have no plane.
     #[inline(always)]
-    fn interpolate<C: Colour>(&mut self, segments: &Segments<C>, chunk: Range<usize>) {
-        let shapes = &self.shapes[..chunk.len()];
-        for (lane, (shape, corners)) in shapes.iter().zip(&self.corners).enumerate() {
-            if let (Some(shape), Some(corners)) = (shape, corners)
+    fn interpolate<C: Colour>(
+        &mut self,
+        engine: &Engine,
+        segments: &Segments<C>,
+        chunk: Range<usize>,
+    ) {
+        for (lane, i) in chunk.clone().enumerate() {
+            if let Some(corners) = self.corners[lane]
+                && let Some(shape) = engine.shape(segments, i)
                 && let Geometry::Triangles(mesh) = &shape.geometry
             {
-                mesh.fetch(*corners, &mut self.triangles, lane);
+                mesh.fetch(corners, &mut self.triangles, lane);
             }
         }
         let (mut u, mut v) = ([0.0; CHUNK], [0.0; CHUNK]);
@@ -118,15 +128,19 @@ impl<'s> SurfaceChunk<'s> {
         let chunk = start..segments.len().min(start + CHUNK);
         let geometries = &segments.hits.geometry_ids()[chunk.clone()];
         let primitives = &segments.hits.primitive_ids()[chunk];
-        let hits = geometries.iter().zip(primitives);
-        for (next, (&geometry, &primitive)) in self.next_shapes.iter_mut().zip(hits) {
-            *next = engine.accelerator.shape(&engine.scene, geometry);
-            if let Some(Shape {
+        for (lane, (&geometry, &primitive)) in geometries.iter().zip(primitives).enumerate() {
+            let entry = engine.shapes.entry(geometry);
+            let plane = entry.plane(primitive);
+            self.next_entries[lane] = entry;
+            self.next_planes[lane] = plane;
+            if plane != Planes::NONE {
+                engine.scene.planes.prefetch(plane);
+            } else if let Some(Shape {
                 geometry: Geometry::Triangles(mesh),
                 ..
-            }) = next
+            }) = engine.accelerator.shape(&engine.scene, geometry)
             {
-                mesh.prefetch_triangle(primitive);
+                mesh.prefetch_corners(primitive);
             }
         }
     }
@@ -140,9 +154,7 @@ impl<'s> SurfaceChunk<'s> {
         chunk: Range<usize>,
     ) {
         for (lane, i) in chunk.enumerate() {
-            if self.shapes[lane].is_some()
-                && let Some(instance) = engine.instance(segments, i)
-            {
+            if let Some(instance) = engine.instance(segments, i) {
                 self.points
                     .set(lane, &instance.point(&self.points.get(lane)));
             }
@@ -150,9 +162,14 @@ impl<'s> SurfaceChunk<'s> {
     }
 
     /// Finds the points of those that are no meshes.
-    fn locate_quadrics<C: Colour>(&mut self, segments: &Segments<C>, chunk: Range<usize>) {
+    fn locate_quadrics<C: Colour>(
+        &mut self,
+        engine: &Engine,
+        segments: &Segments<C>,
+        chunk: Range<usize>,
+    ) {
         for (lane, i) in chunk.enumerate() {
-            match self.shapes[lane] {
+            match engine.shape(segments, i) {
                 None
                 | Some(Shape {
                     geometry: Geometry::Triangles(_),

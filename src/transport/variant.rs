@@ -70,7 +70,7 @@ impl<C: Colour> Arrivals<'_, C> {
     #[inline(always)]
     pub fn at_surfaces(&self) -> impl Iterator<Item = (usize, Arrival<'_, C>)> {
         (0..self.chunk.len()).filter_map(|lane| {
-            let shape = self.surfaces.shapes[lane]?;
+            let shape = self.engine.shape(self.segments, self.chunk.start + lane)?;
             let arrival = Arrival {
                 shape,
                 material: &self.engine.scene.materials[shape.material.index()],

@@ -6,7 +6,7 @@ use super::Loader;
 use crate::scene::bsdfs;
 use crate::scene::emitters::{self, Emitter};
 use crate::scene::error::SceneError;
-use crate::scene::shapes::{self, Geometry, Instance, Shape, ShapeGroup};
+use crate::scene::shapes::{self, Geometry, Instance, Planes, Shape, ShapeGroup};
 use crate::scene::source::Source;
 use crate::scene::textures::AskedAttribute;
 use crate::scene::xml::{Child, Class, Object};
@@ -26,11 +26,7 @@ impl Loader<'_> {
         for object in objects().filter(is_placed) {
             self.shape(object)?;
         }
-        for shape in &mut self.shapes {
-            if let Geometry::Triangles(mesh) = &mut shape.geometry {
-                mesh.prepare_planes();
-            }
-        }
+        self.planes = Planes::of(&self.shapes);
         let instances = of_plugin("instance").map(|object| Instance::load(object, self));
         let instances = instances.collect::<Result<_, _>>()?;
         for object in of_plugin("shapegroup") {

@@ -3,6 +3,8 @@
 use glam::Vec3;
 
 use super::lanes::SurfaceLanes;
+use super::{Geometry, Shape};
+use crate::embree;
 use crate::lanes::VectorLanes;
 
 /// The plane of a triangle, in a quarter of a cache line: the points p with p · normal = distance.
@@ -31,6 +33,65 @@ impl Plane {
             normal: normal.into(),
             distance,
         }
+    }
+}
+
+/// The planes of all flat triangles that stand in the world.
+#[derive(Debug)]
+pub(crate) struct Planes {
+    /// Those of a mesh side by side.
+    all: Vec<Plane>,
+    /// By shape: the number of the first of its planes, [`Planes::NONE`] where it has none.
+    first: Vec<u32>,
+}
+
+impl Planes {
+    /// The number of no plane.
+    pub const NONE: u32 = u32::MAX;
+
+    /// The planes of `shapes`, which stand in the world.
+    pub fn of(shapes: &[Shape]) -> Self {
+        let mut all = Vec::new();
+        let first = shapes.iter().map(|shape| {
+            let Geometry::Triangles(mesh) = &shape.geometry else {
+                return Self::NONE;
+            };
+            let first = all.len();
+            // Beyond that there are no numbers; the triangles are found by their corners.
+            if first + mesh.indices().len() >= Self::NONE as usize {
+                return Self::NONE;
+            }
+            match mesh.planes() {
+                None => Self::NONE,
+                Some(planes) => {
+                    all.reserve_exact(planes.len());
+                    all.extend(planes);
+                    first as u32
+                }
+            }
+        });
+        Self {
+            first: first.collect(),
+            all,
+        }
+    }
+
+    /// The number of the plane of the first triangle of shape number `shape`; those of its others follow. [`Self::NONE`] where it has
+    /// none.
+    pub fn first(&self, shape: usize) -> u32 {
+        self.first.get(shape).copied().unwrap_or(Self::NONE)
+    }
+
+    /// A plane by its number; `None` of [`Self::NONE`].
+    #[inline(always)]
+    pub fn get(&self, number: u32) -> Option<Plane> {
+        self.all.get(number as usize).copied()
+    }
+
+    /// Says that a plane will be asked for soon.
+    #[inline(always)]
+    pub fn prefetch(&self, number: u32) {
+        embree::prefetch(&self.all, number);
     }
 }
 

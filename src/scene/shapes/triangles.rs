@@ -11,7 +11,7 @@ use super::{
     AttributesAt, Geometry, HitCoordinates, Placement, Plane, ShapeSample, SurfaceParameters,
     SurfacePoint,
 };
-use crate::embree::{self, IndexBuffer, VertexBuffer};
+use crate::embree::{IndexBuffer, VertexBuffer};
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;
 use crate::scene::mesh::{self, MeshAttribute, MeshData};
@@ -25,7 +25,6 @@ pub struct Triangles {
     attributes: TriangleAttributes,
     area: f32,
     /// Those of the triangles. Made only for flat meshes that stand in the world: rays are not in the space of a group.
-    planes: Vec<Plane>,
     /// Made only for meshes that emit.
     sampling: Option<MeshSampling>,
 }
@@ -131,21 +130,20 @@ impl Triangles {
             indices,
             attributes,
             area,
-            planes: Vec::new(),
             sampling: None,
         }
     }
 
-    /// Makes a mesh that is shaded flat ready for [`Self::plane`].
-    pub(in crate::scene) fn prepare_planes(&mut self) {
-        if let VertexBuffer::Flat(vertices) = &*self.vertices {
-            let flipped = self.attributes.flip_normals;
-            let planes = self.indices.iter().map(|triangle| {
-                let corners = triangle.map(|corner| vertices[corner as usize].position.into());
-                Plane::of(corners, flipped)
-            });
-            self.planes = planes.collect();
-        }
+    /// The planes of the triangles, if the mesh is shaded flat.
+    pub(super) fn planes(&self) -> Option<impl ExactSizeIterator<Item = Plane>> {
+        let VertexBuffer::Flat(vertices) = &*self.vertices else {
+            return None;
+        };
+        let flipped = self.attributes.flip_normals;
+        Some(self.indices.iter().map(move |triangle| {
+            let corners = triangle.map(|corner| vertices[corner as usize].position.into());
+            Plane::of(corners, flipped)
+        }))
     }
 
     /// Makes the mesh ready for [`Self::sample`]. Returns whether it can be: its area must be positive and finite.
@@ -270,12 +268,6 @@ impl Triangles {
         }
     }
 
-    /// The plane of a triangle, if the mesh has such.
-    #[inline(always)]
-    pub(crate) fn plane(&self, triangle: u32) -> Option<Plane> {
-        self.planes.get(triangle as usize).copied()
-    }
-
     /// The vertices of a triangle. Together with [`Self::fetch`] and [`CornerLanes::interpolate`] this is [`Self::point`]
     /// in three steps, so that a batch can take each step for many hits at once and does not wait for the memory of one
     /// after the other.
@@ -284,14 +276,10 @@ impl Triangles {
         self.indices[triangle as usize]
     }
 
-    /// Says that [`Self::plane`] of a triangle, or else [`Self::corners`], will be asked for soon.
+    /// Says that [`Self::corners`] of a triangle will be asked for soon.
     #[inline(always)]
-    pub(crate) fn prefetch_triangle(&self, triangle: u32) {
-        if self.planes.is_empty() {
-            self.indices.prefetch(triangle);
-        } else {
-            embree::prefetch(&self.planes, triangle);
-        }
+    pub(crate) fn prefetch_corners(&self, triangle: u32) {
+        self.indices.prefetch(triangle);
     }
 
     /// Says that [`Self::fetch`] will be asked for soon.
