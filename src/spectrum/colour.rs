@@ -41,6 +41,13 @@ pub trait Colour: Copy + Debug + Default + Send + Sync + 'static {
         take: impl FnMut(Self::Spectrum),
     );
 
+    /// Appends the values of all `curves` for a path with each of the `wavelengths`: those of one path side by side.
+    fn evaluate_all(
+        curves: &[SpectralCurve],
+        wavelengths: &[Self::Wavelengths],
+        values: &mut Vec<Self::Spectrum>,
+    );
+
     /// The values of a point of an image of emitted colours for a path with `wavelengths`.
     fn evaluate_emission(
         image: &EmissionImage,
@@ -100,6 +107,13 @@ impl Colour for Rgb {
         }
     }
 
+    #[inline(always)]
+    fn evaluate_all(curves: &[SpectralCurve], wavelengths: &[()], values: &mut Vec<Spectrum<3>>) {
+        for _ in wavelengths {
+            values.extend(curves.iter().map(|curve| Spectrum(curve.rgb())));
+        }
+    }
+
     #[inline]
     fn evaluate_emission(
         image: &EmissionImage,
@@ -153,6 +167,15 @@ impl<const N: usize> Colour for Spectral<N> {
         take: impl FnMut(Spectrum<N>),
     ) {
         curve_lanes::evaluate_each(colours, take);
+    }
+
+    #[inline(always)]
+    fn evaluate_all(
+        curves: &[SpectralCurve],
+        wavelengths: &[Wavelengths<N>],
+        values: &mut Vec<Spectrum<N>>,
+    ) {
+        curve_lanes::evaluate_all(curves, wavelengths, values);
     }
 
     #[inline]

@@ -44,6 +44,45 @@ pub(super) fn evaluate_each<'a, const N: usize>(
     }
 }
 
+/// Appends the values of all `curves` at each of the `wavelengths` to `values`: those at the same ones side by side.
+#[inline(always)]
+pub(super) fn evaluate_all<const N: usize>(
+    curves: &[SpectralCurve],
+    wavelengths: &[Wavelengths<N>],
+    values: &mut Vec<Spectrum<N>>,
+) {
+    let mut places = GridPlaces::<N>::new();
+    for wavelengths in wavelengths.chunks(LANES) {
+        let start = values.len();
+        values.resize(start + wavelengths.len() * curves.len(), Spectrum([0.0; N]));
+        let values = &mut values[start..];
+        for (nm, wavelengths) in places.nm.iter_mut().zip(wavelengths) {
+            *nm = *wavelengths.nm();
+        }
+        let mut found = None;
+        for (number, curve) in curves.iter().enumerate() {
+            let of_curve = values.iter_mut().skip(number).step_by(curves.len());
+            match curve.regular_table() {
+                Some(table) => {
+                    // Measured curves are often given at the same wavelengths.
+                    if !found.is_some_and(|found| table.is_aligned_with(found)) {
+                        places.find_in(table);
+                        found = Some(table);
+                    }
+                    for (lane, value) in of_curve.enumerate() {
+                        *value = Spectrum(places.values(lane, table));
+                    }
+                }
+                None => {
+                    for (value, wavelengths) in of_curve.zip(wavelengths) {
+                        *value = curve.evaluate(wavelengths);
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Where wavelengths lie in the tables of their lanes.
 #[repr(align(64))]
 struct GridPlaces<const N: usize> {
@@ -81,6 +120,16 @@ impl<const N: usize> GridPlaces<N> {
         self.last_nm[lane] = [table.last_nm; N];
         self.entries_per_nm[lane] = [table.entries_per_nm; N];
         self.last_interval[lane] = [table.last_interval(); N];
+    }
+
+    /// Finds the places of all `nm` in the same `table`.
+    #[inline(always)]
+    fn find_in(&mut self, table: &RegularTable) {
+        self.first_nm = [[table.first_nm; N]; LANES];
+        self.last_nm = [[table.last_nm; N]; LANES];
+        self.entries_per_nm = [[table.entries_per_nm; N]; LANES];
+        self.last_interval = [[table.last_interval(); N]; LANES];
+        self.find();
     }
 
     /// Finds all that was asked for.
@@ -143,6 +192,12 @@ mod tests {
             let mut values = Vec::new();
             evaluate_each(colours(), |value| values.push(value));
             let expected: Vec<_> = colours().map(|(curve, at)| curve.evaluate(at)).collect();
+            assert_eq!(values, expected);
+
+            values.clear();
+            evaluate_all(&kinds, &wavelengths, &mut values);
+            let of_path = |at| kinds.iter().map(move |curve| curve.evaluate(at));
+            let expected: Vec<_> = wavelengths.iter().flat_map(of_path).collect();
             assert_eq!(values, expected);
         }
     }

@@ -192,6 +192,15 @@ impl RegularTable {
         })
     }
 
+    /// Whether its entries stand at the wavelengths of those of `other`.
+    #[inline(always)]
+    pub(super) fn is_aligned_with(&self, other: &Self) -> bool {
+        self.first_nm == other.first_nm
+            && self.last_nm == other.last_nm
+            && self.entries_per_nm == other.entries_per_nm
+            && self.intervals.len() == other.intervals.len()
+    }
+
     /// The number of the last interval.
     #[inline(always)]
     pub(super) fn last_interval(&self) -> f32 {

@@ -30,9 +30,11 @@ pub(super) struct CameraPaths<C: Colour> {
     pub wavelength_draw: Vec<C::WavelengthDraw>,
     /// What has arrived so far at the camera.
     pub radiance: Vec<C::Spectrum>,
-    /// What the curves of the [`EmissionTable`](super::emission_table::EmissionTable) are at those wavelengths: all of one path
-    /// side by side.
+    /// The colours of the [`EmissionTable`](super::emission_table::EmissionTable) on the path: all of one path side by side. Empty
+    /// where it does not prepare them.
     pub emission: Vec<C::Spectrum>,
+    /// The reflectances of the [`ShapeTable`](super::shape_table::ShapeTable) likewise.
+    pub reflectances: Vec<C::Spectrum>,
     /// The reconstruction filter's weight of the sample.
     pub filter_weight: Vec<f32>,
 }
@@ -138,6 +140,7 @@ impl<C: Colour> CameraPaths<C> {
             wavelength_draw: Vec::new(),
             radiance: Vec::new(),
             emission: Vec::new(),
+            reflectances: Vec::new(),
             filter_weight: Vec::new(),
         }
     }

@@ -8,7 +8,7 @@ use multiversion::multiversion;
 use super::batch::{CameraPaths, Segments};
 use super::engine::{Engine, TileJob};
 use super::lineage::first_births;
-use super::variant::{Variant, carries_points};
+use super::variant::{Scattering, Variant, carries_points};
 use crate::film::FilmTile;
 use crate::lanes::CHUNK;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
@@ -96,6 +96,7 @@ pub(super) fn start<C: Colour, V: Variant>(
         first_births(&mut segments.births, count);
     }
     engine.emission.prepare(paths);
+    V::Scattering::prepare(engine, paths);
 }
 
 /// A sample of a pixel, both numbered within the batch.

@@ -135,10 +135,7 @@ fn add_emission<C: Colour>(
         let path = segments.path[i] as usize;
         let wavelengths = &wavelengths[path];
         let direction = Vec3::from(segments.rays.direction(i));
-        let emitted = match (
-            &engine.scene.emitters[emitter],
-            engine.shape(segments, i),
-        ) {
+        let emitted = match (&engine.scene.emitters[emitter], engine.shape(segments, i)) {
             (Emitter::Area(light), Some(shape)) => {
                 let point = surfaces.points.get(lane);
                 let parameters = || shape.geometry.parameters(&segments.hit(i), &point);

@@ -1,59 +1,41 @@
 //! What lamps emit, evaluated once per path and not at every vertex that looks at them.
 
 use super::batch::CameraPaths;
-use crate::room::make_room;
+use super::colour_table::ColourTable;
 use crate::scene::Emitter;
-use crate::spectrum::{Colour, SpectralCurve};
+use crate::spectrum::Colour;
 
-/// With more curves than this, a path would evaluate more of them than it looks at.
-const MOST_CURVES: usize = 2;
+/// Vertices look at one lamp each: with more colours than this, a path would evaluate more of them than it looks at.
+const MOST_COLOURS: usize = 2;
 
-/// The spectra of area lights. Where a scene has so few different ones, every path evaluates them all as it starts.
+/// The spectra of area lights.
 pub(super) struct EmissionTable {
-    /// The different spectra.
-    curves: Vec<SpectralCurve>,
-    /// By emitter: which of them it has; without meaning where it has none, or one that varies.
-    curve_of: Vec<usize>,
-    /// How many of them every path evaluates: all or none.
-    prepared: usize,
+    colours: ColourTable,
+    /// By emitter: the number of its colour; without meaning where it has none, or one that varies.
+    colour_of: Vec<usize>,
 }
 
 impl EmissionTable {
     /// The table of a scene's emitters.
     pub fn new(emitters: &[Emitter]) -> Self {
-        let mut curves: Vec<SpectralCurve> = Vec::new();
-        let mut curve_of = Vec::new();
-        for emitter in emitters {
-            let radiance = match emitter {
-                Emitter::Area(light) => light.uniform_radiance(),
-                _ => None,
-            };
-            let Some(radiance) = radiance else {
-                curve_of.push(usize::MAX);
-                continue;
-            };
-            let known = curves.iter().position(|curve| curve == radiance);
-            curve_of.push(known.unwrap_or(curves.len()));
-            if known.is_none() {
-                curves.push(radiance.clone());
-            }
-        }
-        let is_small = curves.len() <= MOST_CURVES;
+        let mut colours = ColourTable::new(MOST_COLOURS);
+        let colour_of = emitters.iter().map(|emitter| match emitter {
+            Emitter::Area(light) => light
+                .uniform_radiance()
+                .map_or(usize::MAX, |radiance| colours.number_of(radiance)),
+            _ => usize::MAX,
+        });
         Self {
-            prepared: if is_small { curves.len() } else { 0 },
-            curves,
-            curve_of,
+            colour_of: colour_of.collect(),
+            colours,
         }
     }
 
-    /// Evaluates the spectra at the wavelengths of every path.
+    /// Evaluates the spectra at the wavelengths of every path, where there are few.
     #[inline(always)]
     pub fn prepare<C: Colour>(&self, paths: &mut CameraPaths<C>) {
-        make_room(&mut paths.emission, paths.wavelengths.len() * self.prepared);
-        let curves = &self.curves[..self.prepared];
-        let curves_of = |wavelengths| curves.iter().map(move |curve| (curve, wavelengths));
-        let colours = paths.wavelengths.iter().flat_map(curves_of);
-        C::evaluate_each(colours, |radiance| paths.emission.push(radiance));
+        self.colours
+            .prepare::<C>(&paths.wavelengths, &mut paths.emission);
     }
 
     /// The radiance of emitter number `emitter`, an area light of the same radiance everywhere, at the wavelengths of `path`.
@@ -64,10 +46,11 @@ impl EmissionTable {
         path: usize,
         emitter: usize,
     ) -> C::Spectrum {
-        let curve = self.curve_of[emitter];
-        if self.prepared == 0 {
-            return C::evaluate(&self.curves[curve], &paths.wavelengths[path]);
+        let number = self.colour_of[emitter];
+        if self.colours.is_prepared::<C>() {
+            self.colours.prepared(&paths.emission, path, number)
+        } else {
+            C::evaluate(self.colours.curve(number), &paths.wavelengths[path])
         }
-        paths.emission[path * self.prepared + curve]
     }
 }

@@ -2,11 +2,13 @@
 
 use glam::Vec3;
 
+use super::batch::CameraPaths;
+use super::engine::Engine;
 use super::variant::{Arrivals, Guiding, Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::sampling::{Frame, Sampler, warp};
 use crate::scene::{BsdfSamples, BsdfValues, Diffuse, Refraction};
-use crate::spectrum::{Colour, SpectralCurve, SpectrumArithmetic};
+use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// See the module.
 pub(super) struct Matte;
@@ -20,24 +22,37 @@ impl Variant for Matte {
 
 impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     #[inline(always)]
+    fn prepare<C: Colour<Spectrum = S>>(engine: &Engine, paths: &mut CameraPaths<C>) {
+        let reflectances = &engine.shapes.reflectances;
+        reflectances.prepare::<C>(&paths.wavelengths, &mut paths.reflectances);
+    }
+
+    #[inline(always)]
     fn arrive<C: Colour<Spectrum = S>>(
         arrivals: &Arrivals<C>,
         _sampler: &mut Sampler,
         vertices: &mut Vec<Self>,
     ) -> KeptLanes {
         let mut kept = KeptLanes::none();
-        let mut curves = [&SpectralCurve::BLACK; CHUNK];
+        let mut numbers = [0; CHUNK];
         for lane in 0..arrivals.chunk.len() {
-            let entry = arrivals.surfaces.entries[lane];
-            if let Some(reflectance) = entry.reflectance(arrivals.cosines[lane]) {
-                curves[kept.len()] = arrivals.engine.shapes.reflectance(reflectance);
-                kept.add_if(lane, true);
-            }
+            let number = arrivals.surfaces.entries[lane].reflectance(arrivals.cosines[lane]);
+            numbers[lane] = number.unwrap_or_default();
+            kept.add_if(lane, number.is_some());
         }
-        let wavelengths = kept.iter().map(|lane| arrivals.wavelengths(lane));
-        C::evaluate_each(curves.into_iter().zip(wavelengths), |reflectance| {
-            vertices.push(Self { reflectance });
-        });
+        let (table, paths) = (&arrivals.engine.shapes.reflectances, arrivals.paths);
+        if table.is_prepared::<C>() {
+            vertices.extend(kept.iter().map(|lane| {
+                let path = arrivals.path(lane);
+                let reflectance = table.prepared(&paths.reflectances, path, numbers[lane]);
+                Self { reflectance }
+            }));
+        } else {
+            let colour = |lane| (table.curve(numbers[lane]), arrivals.wavelengths(lane));
+            C::evaluate_each(kept.iter().map(colour), |reflectance| {
+                vertices.push(Self { reflectance });
+            });
+        }
         kept
     }
 

@@ -16,6 +16,7 @@ mod accelerator;
 mod arrange;
 mod batch;
 mod camera;
+mod colour_table;
 mod direct;
 mod emission;
 mod emission_table;

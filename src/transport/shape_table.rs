@@ -1,16 +1,19 @@
 //! What every path asks of the shape that it meets, in a few bytes of each: shapes and materials themselves are large, and
 //! hits lie scattered over them.
 
+use super::colour_table::ColourTable;
 use crate::scene::{Planes, Scene, Shape, Side};
-use crate::spectrum::SpectralCurve;
+
+/// A path of a bright scene meets about as many surfaces.
+const MOST_REFLECTANCES: usize = 4;
 
 /// All shapes of a scene as arriving paths see them first.
 pub(super) struct ShapeTable {
     entries: Vec<ShapeEntry>,
     /// What a miss is seen as.
     miss: ShapeEntry,
-    /// The different reflectances of matte surfaces.
-    reflectances: Vec<SpectralCurve>,
+    /// The reflectances of matte surfaces.
+    pub reflectances: ColourTable,
 }
 
 /// A shape as arriving paths see it first.
@@ -53,18 +56,15 @@ impl ShapeEntry {
 impl ShapeTable {
     /// The table of a scene in which what leaves it finds the emitter `surroundings`.
     pub fn new(scene: &Scene, surroundings: Option<usize>) -> Self {
-        let mut reflectances: Vec<SpectralCurve> = Vec::new();
-        let mut number_of = |reflectance: &SpectralCurve| {
-            let known = reflectances.iter().position(|known| known == reflectance);
-            known.unwrap_or_else(|| {
-                reflectances.push(reflectance.clone());
-                reflectances.len() - 1
-            }) as u32
-        };
+        let mut reflectances = ColourTable::new(MOST_REFLECTANCES);
+        let mut number_of = |reflectance| reflectances.number_of(reflectance) as u32;
         // Many shapes may share a material.
         let materials = scene.materials.iter().map(|material| {
-            [Side::Front, Side::Back]
-                .map(|side| material.matte(side).map_or(ShapeEntry::NONE, &mut number_of))
+            [Side::Front, Side::Back].map(|side| {
+                let reflectance = material.matte(side);
+                let bright = reflectance.filter(|reflectance| !reflectance.is_black());
+                bright.map_or(ShapeEntry::NONE, &mut number_of)
+            })
         });
         let of_materials: Vec<[u32; 2]> = materials.collect();
         let entry = |(index, shape): (usize, &Shape)| ShapeEntry {
@@ -87,11 +87,5 @@ impl ShapeTable {
     #[inline(always)]
     pub fn entry(&self, geometry: u32) -> &ShapeEntry {
         self.entries.get(geometry as usize).unwrap_or(&self.miss)
-    }
-
-    /// A reflectance by its number.
-    #[inline(always)]
-    pub fn reflectance(&self, number: usize) -> &SpectralCurve {
-        &self.reflectances[number]
     }
 }

@@ -82,10 +82,16 @@ impl<C: Colour> Arrivals<'_, C> {
         })
     }
 
+    /// The camera path from which the one in a lane descends.
+    #[inline(always)]
+    pub fn path(&self, lane: usize) -> usize {
+        self.segments.path[self.chunk.start + lane] as usize
+    }
+
     /// Which wavelengths the path in a lane carries.
     #[inline(always)]
     pub fn wavelengths(&self, lane: usize) -> &C::Wavelengths {
-        &self.paths.wavelengths[self.segments.path[self.chunk.start + lane] as usize]
+        &self.paths.wavelengths[self.path(lane)]
     }
 }
 
@@ -160,6 +166,10 @@ pub(super) enum Guiding {
 pub(super) trait Scattering<S: SpectrumArithmetic>:
     Copy + Debug + Send + Sync + 'static
 {
+    /// Finds out what all vertices of a path have in common, as camera paths start.
+    #[inline(always)]
+    fn prepare<C: Colour<Spectrum = S>>(_engine: &Engine, _paths: &mut CameraPaths<C>) {}
+
     /// Appends those of the surfaces at which paths arrive to `vertices`, but for black ones, and returns their lanes.
     fn arrive<C: Colour<Spectrum = S>>(
         arrivals: &Arrivals<C>,
