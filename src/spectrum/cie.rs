@@ -99,17 +99,16 @@ pub fn xyz_from_srgb(rgb: [f64; 3]) -> [f64; 3] {
 /// The weight of the wavelength `nm` in linear sRGB, per nm: the integral over the wavelength of a spectral
 /// radiance times this is its linear sRGB colour. Linear between the CIE's entries; `nm` must lie in
 /// [`WAVELENGTH_MIN`]`..=`[`WAVELENGTH_MAX`].
-#[inline(always)]
 pub(super) fn matching_srgb(nm: f32) -> [f32; 3] {
-    let [r, g, b, _] = matching_srgb_vector(nm);
+    let GridPlace { entry, fraction } = locate(nm);
+    let [r, g, b, _] = matching_srgb_at(entry, fraction);
     [r, g, b]
 }
 
-/// [`matching_srgb`] and 0.
+/// [`matching_srgb`], and 0, at a `fraction` of the way from an `entry` to the next.
 #[inline(always)]
-pub(super) fn matching_srgb_vector(nm: f32) -> [f32; 4] {
-    let (entry, fraction) = locate(nm);
-    let MatchingInterval { value, difference } = MATCHING_SRGB[entry];
+pub(super) fn matching_srgb_at(entry: u32, fraction: f32) -> [f32; 4] {
+    let MatchingInterval { value, difference } = MATCHING_SRGB[entry as usize];
     std::array::from_fn(|i| value[i] + fraction * difference[i])
 }
 
@@ -117,16 +116,16 @@ pub(super) fn matching_srgb_vector(nm: f32) -> [f32; 4] {
 /// [`WAVELENGTH_MIN`]`..=`[`WAVELENGTH_MAX`].
 #[inline(always)]
 pub(super) fn illuminant_d65(nm: f32) -> f32 {
-    let (entry, fraction) = locate(nm);
+    let GridPlace { entry, fraction } = locate(nm);
+    let entry = entry as usize;
     (D65[entry] + fraction * (D65[entry + 1] - D65[entry])) * D65_NORMALISATION as f32
 }
 
 /// The entry of a CIE table at or before `nm`, and the fraction of the way from there to the next.
 #[inline(always)]
-fn locate(nm: f32) -> (usize, f32) {
+pub(super) fn locate(nm: f32) -> GridPlace {
     let position = (nm - WAVELENGTH_MIN) * (1.0 / STEP);
-    let GridPlace { entry, fraction } = GridPlace::of(position, (ENTRIES - 2) as f32);
-    (entry as usize, fraction)
+    GridPlace::of(position, (ENTRIES - 2) as f32)
 }
 
 /// Unbounded linear sRGB of a quantity given over the wavelength in nm, under the illuminant E (`emission`) or

@@ -1,10 +1,10 @@
 //! How colours travel along a path: the engine is one code, generic over this.
 
-use super::cie::matching_srgb_vector;
 use super::curve::SpectralCurve;
 use super::curve_lanes;
 use super::emission_image::{BetweenTexels, EmissionImage};
 use super::reflectances::Reflectances;
+use super::rgb_lanes;
 use super::values::{Spectrum, SpectrumArithmetic};
 use super::wavelengths::Wavelengths;
 use crate::lanes::CHUNK;
@@ -62,13 +62,14 @@ pub trait Colour: Copy + Debug + Default + Send + Sync + 'static {
         wavelengths: &Self::Wavelengths,
     ) -> Self::Spectrum;
 
-    /// The linear sRGB colour of a path's radiance: an unbiased estimate over the choice of the wavelengths, with
-    /// components that may be negative.
+    /// Appends the linear sRGB colours of the radiances of many paths to `colours`, each at the wavelengths beside it and their draw: unbiased estimates
+    /// over the choice of the wavelengths, with components that may be negative.
     fn to_rgb(
-        radiance: Self::Spectrum,
-        wavelengths: &Self::Wavelengths,
-        draw: Self::WavelengthDraw,
-    ) -> [f32; 3];
+        radiances: &[Self::Spectrum],
+        wavelengths: &[Self::Wavelengths],
+        draws: &[Self::WavelengthDraw],
+        colours: &mut Vec<[f32; 3]>,
+    );
 }
 
 /// Three channels, linear sRGB, each multiplied by itself.
@@ -129,8 +130,13 @@ impl Colour for Rgb {
     }
 
     #[inline]
-    fn to_rgb(radiance: Spectrum<3>, _wavelengths: &(), _draw: ()) -> [f32; 3] {
-        radiance.0
+    fn to_rgb(
+        radiances: &[Spectrum<3>],
+        _wavelengths: &[()],
+        _draws: &[()],
+        colours: &mut Vec<[f32; 3]>,
+    ) {
+        colours.extend(radiances.iter().map(|radiance| radiance.0));
     }
 }
 
@@ -197,26 +203,30 @@ impl<const N: usize> Colour for Spectral<N> {
     }
 
     #[inline(always)]
-    fn to_rgb(radiance: Spectrum<N>, wavelengths: &Wavelengths<N>, draw: f32) -> [f32; 3] {
-        let pdf = Wavelengths::<N>::pdf(draw);
-        let mut rgb = [0.0; 4];
-        for i in 0..N {
-            let estimate = radiance[i] / (pdf[i] * N as f32);
-            for (sum, weight) in rgb
-                .iter_mut()
-                .zip(matching_srgb_vector(wavelengths.nm()[i]))
-            {
-                *sum += weight * estimate;
-            }
-        }
-        let [r, g, b, _] = rgb;
-        [r, g, b]
+    fn to_rgb(
+        radiances: &[Spectrum<N>],
+        wavelengths: &[Wavelengths<N>],
+        draws: &[f32],
+        colours: &mut Vec<[f32; 3]>,
+    ) {
+        rgb_lanes::to_rgb(radiances, wavelengths, draws, colours);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The colour of one path.
+    fn to_rgb<C: Colour>(
+        radiance: C::Spectrum,
+        wavelengths: &C::Wavelengths,
+        draw: C::WavelengthDraw,
+    ) -> [f32; 3] {
+        let mut colours = Vec::new();
+        C::to_rgb(&[radiance], &[*wavelengths], &[draw], &mut colours);
+        colours[0]
+    }
 
     /// The colour of a radiance as the mean over the paths with evenly spread random numbers.
     fn mean_colour<const N: usize>(radiance: impl Fn(&Wavelengths<N>) -> Spectrum<N>) -> [f32; 3] {
@@ -225,10 +235,11 @@ mod tests {
         for path in 0..paths {
             let draw = (path as f32 + 0.5) / paths as f32;
             let wavelengths = Wavelengths::<N>::sample(draw);
-            for (sum, channel) in
-                sum.iter_mut()
-                    .zip(Spectral::to_rgb(radiance(&wavelengths), &wavelengths, draw))
-            {
+            for (sum, channel) in sum.iter_mut().zip(to_rgb::<Spectral<N>>(
+                radiance(&wavelengths),
+                &wavelengths,
+                draw,
+            )) {
                 *sum += f64::from(channel);
             }
         }
@@ -281,7 +292,7 @@ mod tests {
     fn both_ways_see_the_same_measured_lamp() {
         let entries = [(400.0, 0.0), (500.0, 8.0), (600.0, 15.6), (700.0, 18.4)];
         let lamp = SpectralCurve::tabulated_emission(&entries).unwrap();
-        let rgb = Rgb::to_rgb(Rgb::evaluate(&lamp, &()), &(), ());
+        let rgb = to_rgb::<Rgb>(Rgb::evaluate(&lamp, &()), &(), ());
         assert_close(rgb, lamp.rgb(), 1e-9);
         assert_close(
             mean_colour::<4>(|w| Spectral::evaluate(&lamp, w)),
@@ -296,7 +307,7 @@ mod tests {
         let wavelengths = Wavelengths::at([450.0, 520.0, 555.0, 601.0]);
         let draw = 0.25;
         let radiance = Spectrum([1.0, 2.0, 3.0, 4.0]) * Spectrum(Wavelengths::pdf(draw));
-        let rgb = Spectral::to_rgb(radiance, &wavelengths, draw);
+        let rgb = to_rgb::<Spectral<4>>(radiance, &wavelengths, draw);
         assert_close(rgb, [0.020_087_6, 0.016_487_2, 0.002_326_41], 1e-6);
     }
 }

@@ -16,6 +16,7 @@ mod emission_image;
 mod error;
 mod piecewise_linear;
 mod reflectances;
+mod rgb_lanes;
 mod upsampling;
 mod values;
 mod wavelengths;

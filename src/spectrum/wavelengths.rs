@@ -35,7 +35,18 @@ impl<const N: usize> Wavelengths<N> {
     /// The probability density with which each of those was drawn, per nm.
     #[inline(always)]
     pub fn pdf(u: f32) -> [f32; N] {
-        std::array::from_fn(|i| density_at(tanh_of(rotation::<N>(u, i))))
+        let [densities] = Self::pdf_each(&[u]);
+        densities
+    }
+
+    /// [`Self::pdf`] for each of the numbers `u`.
+    #[inline(always)]
+    pub(super) fn pdf_each<const LANES: usize>(u: &[f32; LANES]) -> [[f32; N]; LANES] {
+        let mut densities = u.map(|u| std::array::from_fn(|i| rotation::<N>(u, i)));
+        for density in densities.as_flattened_mut() {
+            *density = density_at(tanh_of(*density));
+        }
+        densities
     }
 
     /// Appends `count` of them, at most [`CHUNK`], each drawn by [`Self::sample`] from its number `u`.

@@ -35,6 +35,8 @@ pub(super) struct CameraPaths<C: Colour> {
     pub emission: Vec<C::Spectrum>,
     /// The reflectances of the [`ShapeTable`](super::shape_table::ShapeTable) likewise.
     pub reflectances: Vec<C::Spectrum>,
+    /// The radiance in linear sRGB, once all has arrived.
+    pub colour: Vec<[f32; 3]>,
     /// The reconstruction filter's weight of the sample.
     pub filter_weight: Vec<f32>,
 }
@@ -141,6 +143,7 @@ impl<C: Colour> CameraPaths<C> {
             radiance: Vec::new(),
             emission: Vec::new(),
             reflectances: Vec::new(),
+            colour: Vec::new(),
             filter_weight: Vec::new(),
         }
     }

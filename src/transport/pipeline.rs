@@ -110,7 +110,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
         splat::expose(
             engine,
             job.weight,
-            &self.paths,
+            &mut self.paths,
             tile,
             &mut self.statistics.dropped,
         );

@@ -1,5 +1,7 @@
 //! Stage: children leave their parents in directions drawn from the bsdf.
 
+use std::ops::Range;
+
 use multiversion::multiversion;
 
 use super::batch::{CameraPaths, Segments, Vertices};
@@ -8,7 +10,7 @@ use super::guidance::{Guidance, SquarePlaces};
 use super::lineage::Birth;
 use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant, carries_points};
-use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
+use crate::lanes::{CHUNK, KeptLanes, VectorColumn, VectorLanes, copy_kept};
 use crate::learning::Knowledge;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
 use crate::scene::BsdfSamples;
@@ -48,9 +50,8 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     let mut places = SquarePlaces::default();
     let learns = !vertices.segment.is_empty();
     for children in children.chunks(CHUNK) {
-        for (lane, child) in children.iter().enumerate() {
-            normals.put(lane, vertices.normal.get(child.parent as usize));
-        }
+        let run = run_of_parents(children);
+        fetch(&vertices.normal, children, &run, &mut normals);
         if let Some(ranks) = &mut ranks {
             for (point, child) in points.iter_mut().zip(children) {
                 *point = paths.rank(vertices.path[child.parent as usize], ranks);
@@ -84,10 +85,8 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         if learns {
             places = SquarePlaces::of(bsdfs, &normals, &samples.direction);
         }
-        for (lane, parent) in parents.clone().enumerate() {
-            normals.put(lane, vertices.geometric_normal.get(parent));
-            origins.put(lane, vertices.position.get(parent));
-        }
+        fetch(&vertices.geometric_normal, children, &run, &mut normals);
+        fetch(&vertices.position, children, &run, &mut origins);
         let clearances = vertices.clearances(parents, &mut clearances);
         for lane in 0..CHUNK {
             let (position, normal) = (origins.get(lane), normals.get(lane));
@@ -153,6 +152,35 @@ pub(super) fn scatter<C: Colour, V: Variant>(
     }
     let count = segments.len();
     segments.rays.resize(count);
+}
+
+/// The parents of a chunk of children, where each of some neighbours has one child: nothing has been decided of them yet, or all
+/// have been let live.
+#[inline(always)]
+fn run_of_parents(children: &[Child]) -> Option<Range<usize>> {
+    let first = children.first()?.parent;
+    let is_next = |is_run, (i, child): (usize, &Child)| is_run & (child.parent == first + i as u32);
+    let is_run = children.iter().enumerate().fold(true, is_next);
+    let start = first as usize;
+    is_run.then_some(start..start + children.len())
+}
+
+/// Puts what `column` says of the parents of a chunk of children, perhaps a `run` of them, into the lanes of the children.
+#[inline(always)]
+fn fetch(
+    column: &VectorColumn,
+    children: &[Child],
+    run: &Option<Range<usize>>,
+    lanes: &mut VectorLanes<CHUNK>,
+) {
+    match run {
+        Some(run) => lanes.load(column.slices(run.clone())),
+        None => {
+            for (lane, child) in children.iter().enumerate() {
+                lanes.put(lane, column.get(child.parent as usize));
+            }
+        }
+    }
 }
 
 /// Counts siblings, which stand side by side.

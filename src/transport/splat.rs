@@ -6,6 +6,7 @@ use super::batch::CameraPaths;
 use super::engine::Engine;
 use super::statistics::DroppedSamples;
 use crate::film::{Accumulator, FilmTile, PixelStatistics, SecondMoments, TilePixels};
+use crate::room::make_room;
 use crate::sampling::SamplerKind;
 use crate::spectrum::{Colour, SpectrumArithmetic, xyz_from_srgb};
 use crate::walk::Scope;
@@ -14,13 +15,14 @@ use crate::walk::Scope;
 pub(super) fn expose<C: Colour>(
     engine: &Engine,
     weight: f64,
-    paths: &CameraPaths<C>,
+    paths: &mut CameraPaths<C>,
     tile: &mut FilmTile,
     dropped: &mut DroppedSamples,
 ) {
     // Paths of one population, or of one sequence, are not independent of each other: together they are one unit.
     let joint = matches!(engine.strategy.scope(), Scope::Pixel | Scope::Tile)
         || engine.settings.sampler != SamplerKind::Independent;
+    find_colours(paths);
     match &mut tile.pixels {
         TilePixels::Single(pixels) => expose_pixels(paths, joint, weight, pixels, dropped),
         TilePixels::Double(pixels) => expose_pixels(paths, joint, weight, pixels, dropped),
@@ -31,6 +33,22 @@ pub(super) fn expose<C: Colour>(
     if let Some(moments) = &mut tile.second_moments {
         expose_moments(paths, weight, moments);
     }
+}
+
+/// Finds out what the radiances of the paths are in linear sRGB.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn find_colours<C: Colour>(paths: &mut CameraPaths<C>) {
+    make_room(&mut paths.colour, paths.radiance.len());
+    let draws = &paths.wavelength_draw;
+    C::to_rgb(
+        &paths.radiance,
+        &paths.wavelengths,
+        draws,
+        &mut paths.colour,
+    );
 }
 
 /// Adds the squares of the paths to their pixels.
@@ -105,10 +123,6 @@ fn sample<C: Colour>(
 fn rgb<C: Colour>(paths: &CameraPaths<C>, path: usize) -> Option<[f32; 3]> {
     let radiance = paths.radiance[path];
     let is_radiance = |sound, &value: &f32| sound & (0.0..=f32::MAX).contains(&value);
-    let draw = paths.wavelength_draw[path];
-    radiance
-        .components()
-        .iter()
-        .fold(true, is_radiance)
-        .then(|| C::to_rgb(radiance, &paths.wavelengths[path], draw))
+    let is_sound = radiance.components().iter().fold(true, is_radiance);
+    is_sound.then_some(paths.colour[path])
 }
