@@ -67,6 +67,11 @@ impl VectorColumn {
         self.0.iter_mut().for_each(|axis| make_room(axis, count));
     }
 
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0[0].is_empty()
+    }
+
     /// The vector at `index`.
     #[inline(always)]
     pub fn get(&self, index: usize) -> Vec3 {

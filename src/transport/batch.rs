@@ -87,7 +87,8 @@ pub(super) struct Vertices<C: Colour, V: Variant> {
     pub point: Vec<SequencePoint>,
     /// Position in world space.
     pub position: VectorColumn,
-    /// Unit geometric normal in world space.
+    /// Unit geometric normal in world space, on either side. Empty where all surfaces are shaded as they are: see
+    /// [`Self::geometric_normals`].
     pub geometric_normal: VectorColumn,
     /// Unit shading normal of the side that was hit, in world space.
     pub normal: VectorColumn,
@@ -277,6 +278,16 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
 
     pub fn len(&self) -> usize {
         self.path.len()
+    }
+
+    /// Unit geometric normals in world space, on either side.
+    #[inline(always)]
+    pub fn geometric_normals(&self) -> &VectorColumn {
+        if self.geometric_normal.is_empty() {
+            &self.normal
+        } else {
+            &self.geometric_normal
+        }
     }
 
     /// A vertex as next-event estimation sees it.

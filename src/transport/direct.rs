@@ -76,7 +76,7 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
                 guidance.mix(bsdfs_of_chunk, &normals, &lights.direction, &mut bsdfs);
             }
         }
-        normals.load(vertices.geometric_normal.slices(chunk.clone()));
+        normals.load(vertices.geometric_normals().slices(chunk.clone()));
         let clearances = vertices.clearances(chunk.clone(), &mut clearances);
         rays.aim(&positions, &normals, clearances, &lights);
         let expected = &expected[chunk.clone()];

@@ -94,9 +94,11 @@ pub(super) fn arrive<C: Colour, V: Variant>(
         }
         let points = &surfaces.points;
         vertices.position.append(&points.position, &scattering);
-        vertices
-            .geometric_normal
-            .append(&points.geometric_normal, &scattering);
+        if !engine.shades_flat {
+            vertices
+                .geometric_normal
+                .append(&points.geometric_normal, &scattering);
+        }
         vertices.normal.append(&sides.normal, &scattering);
         if has_instances {
             let clearance = |lane| {

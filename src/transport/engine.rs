@@ -33,6 +33,8 @@ pub struct Engine {
     pub(super) emission: EmissionTable,
     /// The rectangle that an emitter is, by emitter, if it is one.
     lamps: Vec<Option<Parallelogram>>,
+    /// Whether all surfaces are shaded as they are: no mesh has normals of its vertices.
+    pub(super) shades_flat: bool,
     /// Whether all surfaces are matte, so that the variant for those can be used.
     pub(super) is_matte: bool,
 }
@@ -82,6 +84,10 @@ impl Engine {
             camera: scene.camera.view(scene.film.size),
             filter: FilterSampler::new(&scene.film),
             is_matte: scene.is_matte(),
+            shades_flat: !scene
+                .shapes
+                .iter()
+                .any(|shape| shape.geometry.is_smoothed()),
             shapes: ShapeTable::new(&scene, scene.emitters.iter().position(Emitter::surrounds)),
             light_choice: LightChoice::new(&scene.emitters, &scene.shapes),
             emission: EmissionTable::new(&scene.emitters),

@@ -10,7 +10,7 @@ use super::offset::leave_surface;
 use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
 use crate::learning::Knowledge;
-use crate::scene::{ChosenGroup, Emitter, LightQuestion, LightSample, Parallelogram};
+use crate::scene::{ChosenGroup, LightQuestion, LightSample, Parallelogram};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// Light drawn for a chunk of vertices, one lane each.
@@ -144,12 +144,13 @@ impl<C: Colour> LightChunk<C> {
         positions: &VectorLanes<CHUNK>,
         [u, v]: [&[f32; CHUNK]; 2],
     ) {
-        let emitters = &engine.scene.emitters;
         // With one lamp, what was chosen is what is there.
         if self.emitter != self.lamps.emitter {
             self.fetch_lamps(engine);
         }
         self.draw_lamps(positions, u, v);
+        let only = engine.light_choice.only();
+        let has_only_lamp = only.is_some_and(|only| engine.lamp(only).is_some());
         for (lane, i) in chunk.enumerate() {
             let path = vertices.path[i] as usize;
             if !vertices.bsdf[i].has_smooth_lobe() {
@@ -157,19 +158,15 @@ impl<C: Colour> LightChunk<C> {
                 continue;
             }
             let chosen = self.emitter[lane] as usize;
-            let emitter = &emitters[chosen];
-            match emitter {
-                Emitter::Area(_) if engine.lamp(chosen).is_some() => {
-                    let radiance = engine.emission.radiance(paths, path, chosen);
-                    self.weight[lane] = radiance * self.lamps.weight[lane];
-                }
-                _ => {
-                    let (position, u) = (positions.get(lane), [u[lane], v[lane]]);
-                    let shapes = &engine.scene.shapes;
-                    let wavelengths = &paths.wavelengths[path];
-                    let sample = emitter.sample::<C>(shapes, position, wavelengths, u);
-                    self.put(lane, position, sample.as_ref());
-                }
+            if has_only_lamp || engine.lamp(chosen).is_some() {
+                let radiance = engine.emission.radiance(paths, path, chosen);
+                self.weight[lane] = radiance * self.lamps.weight[lane];
+            } else {
+                let (position, u) = (positions.get(lane), [u[lane], v[lane]]);
+                let (shapes, emitters) = (&engine.scene.shapes, &engine.scene.emitters);
+                let wavelengths = &paths.wavelengths[path];
+                let sample = emitters[chosen].sample::<C>(shapes, position, wavelengths, u);
+                self.put(lane, position, sample.as_ref());
             }
         }
     }

@@ -85,7 +85,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         if learns {
             places = SquarePlaces::of(bsdfs, &normals, &samples.direction);
         }
-        fetch(&vertices.geometric_normal, children, &run, &mut normals);
+        fetch(vertices.geometric_normals(), children, &run, &mut normals);
         fetch(&vertices.position, children, &run, &mut origins);
         let clearances = vertices.clearances(parents, &mut clearances);
         for lane in 0..CHUNK {

@@ -40,6 +40,7 @@ use super::error::SceneError;
 use super::load::Loader;
 use super::xml::Object;
 use super::{EmitterId, MaterialId};
+use crate::embree::VertexBuffer;
 use crate::sampling::SolidAnglePdf;
 
 const SUPPORTED: [&str; 10] = [
@@ -224,6 +225,14 @@ pub struct HitCoordinates {
 }
 
 impl Geometry {
+    /// Whether it is a mesh with normals of its vertices, so that shading normals may be others than geometric ones.
+    pub fn is_smoothed(&self) -> bool {
+        match self {
+            Self::Triangles(mesh) => matches!(**mesh.vertices(), VertexBuffer::Smooth(_)),
+            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) => false,
+        }
+    }
+
     /// The surface at a hit.
     #[inline]
     pub fn surface(&self, hit: &HitCoordinates) -> SurfacePoint {
