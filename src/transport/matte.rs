@@ -35,8 +35,9 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     ) -> KeptLanes {
         let mut kept = KeptLanes::none();
         let mut numbers = [0; CHUNK];
-        for lane in 0..arrivals.chunk.len() {
-            let number = arrivals.surfaces.entries[lane].reflectance(arrivals.cosines[lane]);
+        let seen = arrivals.surfaces.entries.iter().zip(arrivals.cosines);
+        for (lane, (entry, &cosine)) in seen.take(arrivals.chunk.len()).enumerate() {
+            let number = entry.reflectance(cosine);
             numbers[lane] = number.unwrap_or_default();
             kept.add_if(lane, number.is_some());
         }
