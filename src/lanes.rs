@@ -81,13 +81,9 @@ impl VectorColumn {
 
     /// Appends the lanes that `kept` names.
     #[inline(always)]
-    pub fn append<const N: usize>(&mut self, lanes: &VectorLanes<N>, kept: &KeptLanes) {
+    pub fn append(&mut self, lanes: &VectorLanes<CHUNK>, kept: &KeptLanes) {
         for (axis, lanes) in self.0.iter_mut().zip(&lanes.0) {
-            if kept.len() == N {
-                axis.extend_from_slice(lanes);
-            } else {
-                axis.extend(kept.iter().map(|lane| lanes[lane]));
-            }
+            append_kept(axis, lanes, kept);
         }
     }
 
@@ -134,6 +130,17 @@ impl KeptLanes {
         self.lanes[..self.count]
             .iter()
             .map(|&lane| usize::from(lane) % CHUNK)
+    }
+}
+
+/// Appends the numbers in the lanes that `kept` names to `column`; `lanes` are those of one chunk.
+#[inline(always)]
+pub(crate) fn append_kept<T: Copy>(column: &mut Vec<T>, lanes: &[T], kept: &KeptLanes) {
+    match <&[T; CHUNK]>::try_from(lanes) {
+        Ok(lanes) if kept.len() == CHUNK => column.extend_from_slice(lanes),
+        // Here too the compiler knows the length, and that no lane is outside.
+        Ok(lanes) => column.extend(kept.iter().map(|lane| lanes[lane])),
+        Err(_) => column.extend(kept.iter().map(|lane| lanes[lane])),
     }
 }
 

@@ -10,7 +10,7 @@ use super::light_chunk::LightChunk;
 use super::lineage::Lineage;
 use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant};
-use crate::lanes::{CHUNK, KeptLanes, VectorLanes, copy_kept};
+use crate::lanes::{CHUNK, KeptLanes, VectorLanes, append_kept, copy_kept};
 use crate::learning::{Knowledge, LightObservation};
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use, power_heuristic};
 use crate::scene::{BsdfValues, SurfaceSamples};
@@ -84,7 +84,7 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
 
         let mut kept = KeptLanes::none();
         let mut contributions = [C::Spectrum::ZERO; CHUNK];
-        for (lane, i) in chunk.enumerate() {
+        for (lane, i) in chunk.clone().enumerate() {
             let contribution = vertices.throughput[i]
                 * bsdfs.value[lane]
                 * lights.weight[lane]
@@ -107,12 +107,8 @@ pub(super) fn sample_lights<C: Colour, V: Variant>(
             let segments = kept.iter().map(|lane| vertices.segment[start + lane]);
             shadow.segment.extend(segments);
         }
-        shadow
-            .path
-            .extend(kept.iter().map(|lane| vertices.path[start + lane]));
-        shadow
-            .contribution
-            .extend(kept.iter().map(|lane| contributions[lane]));
+        append_kept(&mut shadow.path, &vertices.path[chunk], &kept);
+        append_kept(&mut shadow.contribution, &contributions, &kept);
     }
     shadow.rays.resize(shadow.path.len());
 }

@@ -11,7 +11,7 @@ use super::lineage::Generation;
 use super::settings::DirectLight;
 use super::surface::SurfaceChunk;
 use super::variant::{Arrivals, Scattering, Variant};
-use crate::lanes::{CHUNK, VectorLanes};
+use crate::lanes::{CHUNK, VectorLanes, append_kept};
 use crate::learning::Knowledge;
 use crate::room::make_room;
 use crate::sampling::{Sampler, SolidAnglePdf, power_heuristic};
@@ -72,7 +72,7 @@ pub(super) fn arrive<C: Colour, V: Variant>(
             engine,
             paths,
             segments,
-            chunk,
+            chunk: chunk.clone(),
             surfaces: &surfaces,
             cosines: &sides.cosine,
         };
@@ -82,10 +82,13 @@ pub(super) fn arrive<C: Colour, V: Variant>(
         if generation.is_some() {
             vertices.segment.extend(kept.clone().map(|i| i as u32));
         }
-        vertices.path.extend(kept.clone().map(|i| segments.path[i]));
-        vertices
-            .throughput
-            .extend(kept.clone().map(|i| segments.throughput[i]));
+        append_kept(
+            &mut vertices.path,
+            &segments.path[chunk.clone()],
+            &scattering,
+        );
+        let throughputs = &segments.throughput[chunk.clone()];
+        append_kept(&mut vertices.throughput, throughputs, &scattering);
         if let Some(ranks) = &mut ranks {
             let points = kept.map(|i| paths.rank(segments.path[i], ranks));
             vertices.point.extend(points);

@@ -10,7 +10,7 @@ use super::guidance::{Guidance, SquarePlaces};
 use super::lineage::Birth;
 use super::offset::{leave_surface, leave_surface_by};
 use super::variant::{Scattering, Variant, carries_points};
-use crate::lanes::{CHUNK, KeptLanes, VectorColumn, VectorLanes, copy_kept};
+use crate::lanes::{CHUNK, KeptLanes, VectorColumn, VectorLanes, append_kept, copy_kept};
 use crate::learning::Knowledge;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
 use crate::scene::BsdfSamples;
@@ -112,9 +112,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
         segments
             .path
             .extend(lanes.clone().map(|lane| vertices.path[parent(lane)]));
-        segments
-            .throughput
-            .extend(lanes.clone().map(|lane| throughputs[lane]));
+        append_kept(&mut segments.throughput, &throughputs, &kept);
         if carries_points {
             let points = lanes.clone().map(|lane| points[lane]);
             segments.point.extend(points);

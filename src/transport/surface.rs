@@ -6,7 +6,7 @@ use super::batch::Segments;
 use super::engine::Engine;
 use super::shape_table::ShapeEntry;
 use crate::embree::INVALID_GEOMETRY;
-use crate::lanes::{CHUNK, VectorLanes, load};
+use crate::lanes::{CHUNK, KeptLanes, VectorLanes, load};
 use crate::scene::{CornerLanes, Geometry, PlaneLanes, Planes, Shape, SurfaceLanes};
 use crate::spectrum::Colour;
 
@@ -24,8 +24,8 @@ pub(super) struct SurfaceChunk<'s> {
     next_planes: [u32; CHUNK],
     /// Of flat triangles in the world.
     planes: PlaneLanes<CHUNK>,
-    /// Of all other triangles.
-    corners: [Option<[u32; 3]>; CHUNK],
+    /// Of all other triangles; without meaning in other lanes.
+    corners: [[u32; 3]; CHUNK],
     triangles: CornerLanes<CHUNK>,
     /// Those of misses mean nothing. Those in instances are in the space of the group until they are [placed](Self::place).
     pub points: SurfaceLanes<CHUNK>,
@@ -39,7 +39,7 @@ impl<'s> SurfaceChunk<'s> {
             next_entries: [miss; CHUNK],
             next_planes: [Planes::NONE; CHUNK],
             planes: PlaneLanes::default(),
-            corners: [None; CHUNK],
+            corners: [[0; 3]; CHUNK],
             triangles: CornerLanes::default(),
             points: SurfaceLanes::default(),
         }
@@ -58,12 +58,11 @@ impl<'s> SurfaceChunk<'s> {
             self.announce(engine, segments, 0);
         }
         self.entries = self.next_entries;
-        let (mut has_corners, mut has_quadrics) = (false, false);
+        let mut corner_lanes = KeptLanes::none();
+        let mut has_quadrics = false;
         for (lane, i) in chunk.clone().enumerate() {
-            let plane = engine.scene.planes.get(self.next_planes[lane]);
-            self.planes.set(lane, plane);
-            self.corners[lane] = None;
-            if plane.is_some() {
+            if let Some(plane) = engine.scene.planes.get(self.next_planes[lane]) {
+                self.planes.put(lane, plane);
                 continue;
             }
             match engine.shape(segments, i).map(|shape| &shape.geometry) {
@@ -71,45 +70,53 @@ impl<'s> SurfaceChunk<'s> {
                 Some(Geometry::Triangles(mesh)) => {
                     let triangle = mesh.corners(segments.hits.primitive_id(i));
                     mesh.prefetch_vertices(triangle);
-                    self.corners[lane] = Some(triangle);
-                    has_corners = true;
+                    self.corners[lane] = triangle;
+                    corner_lanes.add_if(lane, true);
                 }
                 Some(_) => has_quadrics = true,
             }
         }
         self.announce(engine, segments, chunk.end);
-        if has_corners {
-            self.interpolate(engine, segments, chunk.clone());
-        }
         self.meet_planes(segments, chunk.clone());
+        if corner_lanes.len() > 0 {
+            self.interpolate(engine, segments, chunk.clone(), &corner_lanes);
+        }
         if has_quadrics {
             self.locate_quadrics(engine, segments, chunk);
         }
     }
 
-    /// Finds the points of triangles that have no plane.
+    /// Finds the points of triangles that have no plane, those in `lanes`.
     #[inline(always)]
     fn interpolate<C: Colour>(
         &mut self,
         engine: &Engine,
         segments: &Segments<C>,
         chunk: Range<usize>,
+        lanes: &KeptLanes,
     ) {
-        for (lane, i) in chunk.clone().enumerate() {
-            if let Some(corners) = self.corners[lane]
-                && let Some(shape) = engine.shape(segments, i)
+        for lane in lanes.iter() {
+            if let Some(shape) = engine.shape(segments, chunk.start + lane)
                 && let Geometry::Triangles(mesh) = &shape.geometry
             {
-                mesh.fetch(corners, &mut self.triangles, lane);
+                mesh.fetch(self.corners[lane], &mut self.triangles, lane);
             }
         }
         let (mut u, mut v) = ([0.0; CHUNK], [0.0; CHUNK]);
         load(&mut u, &segments.hits.us()[chunk.clone()]);
         load(&mut v, &segments.hits.vs()[chunk]);
-        self.triangles.interpolate(&u, &v, &mut self.points);
+        let mut points = SurfaceLanes::default();
+        self.triangles.interpolate(&u, &v, &mut points);
+        if lanes.len() == CHUNK {
+            self.points = points;
+            return;
+        }
+        for lane in lanes.iter() {
+            self.points.set(lane, &points.get(lane));
+        }
     }
 
-    /// Finds the points of those that have.
+    /// Finds the points of those that have one; the points in all other lanes mean nothing after it.
     #[inline(always)]
     fn meet_planes<C: Colour>(&mut self, segments: &Segments<C>, chunk: Range<usize>) {
         let rays = &segments.rays;

@@ -100,7 +100,6 @@ impl Planes {
 pub(crate) struct PlaneLanes<const N: usize> {
     normal: VectorLanes<N>,
     distance: [f32; N],
-    is_set: [bool; N],
 }
 
 impl<const N: usize> Default for PlaneLanes<N> {
@@ -108,23 +107,19 @@ impl<const N: usize> Default for PlaneLanes<N> {
         Self {
             normal: VectorLanes::default(),
             distance: [0.0; N],
-            is_set: [false; N],
         }
     }
 }
 
 impl<const N: usize> PlaneLanes<N> {
-    /// Puts a plane into its lane, or none.
+    /// Puts a plane into its lane.
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, plane: Option<Plane>) {
-        self.is_set[lane] = plane.is_some();
-        if let Some(plane) = plane {
-            self.normal.put(lane, plane.normal.into());
-            self.distance[lane] = plane.distance;
-        }
+    pub fn put(&mut self, lane: usize, plane: Plane) {
+        self.normal.put(lane, plane.normal.into());
+        self.distance[lane] = plane.distance;
     }
 
-    /// Sets the points of the lanes with a plane: each is where the ray from `origins` in `directions` is at `t`, moved onto the
+    /// Sets the points of all lanes; those of lanes without a plane mean nothing. Each is where the ray from `origins` in `directions` is at `t`, moved onto the
     /// plane. All in world space.
     ///
     /// The error of a point on a ray grows with the distance (Wächter and Binder 2019, "A Fast and Robust Method for Avoiding
@@ -141,23 +136,9 @@ impl<const N: usize> PlaneLanes<N> {
             let normal = self.normal.get(i);
             let along = origins.get(i) + t * directions.get(i);
             let position = along - (normal.dot(along) - self.distance[i]) * normal;
-            let choose = |flat: Vec3, other: Vec3| {
-                let choose = |flat, other| if self.is_set[i] { flat } else { other };
-                Vec3::new(
-                    choose(flat.x, other.x),
-                    choose(flat.y, other.y),
-                    choose(flat.z, other.z),
-                )
-            };
-            let (geometric, shading) = (
-                choose(normal, points.geometric_normal.get(i)),
-                choose(normal, points.shading_normal.get(i)),
-            );
-            points
-                .position
-                .put(i, choose(position, points.position.get(i)));
-            points.geometric_normal.put(i, geometric);
-            points.shading_normal.put(i, shading);
+            points.position.put(i, position);
+            points.geometric_normal.put(i, normal);
+            points.shading_normal.put(i, normal);
         }
     }
 }
@@ -194,16 +175,15 @@ mod tests {
             prop_assume!(direction.as_dvec3().dot(normal).abs() > 0.1);
 
             let mut planes = PlaneLanes::<2>::default();
-            planes.set(0, Some(Plane::of(corners, flipped)));
+            planes.put(0, Plane::of(corners, flipped));
             let (mut origins, mut directions) = (VectorLanes::default(), VectorLanes::default());
             origins.put(0, from);
             directions.put(0, direction);
             let mut points = SurfaceLanes::<2>::default();
             let mut lanes = CornerLanes::<2>::default();
             lanes.set(0, corners, flipped);
-            lanes.set(1, corners, flipped);
             lanes.interpolate(&[u; 2], &[v; 2], &mut points);
-            let interpolated = points.get(1);
+            let interpolated = points.get(0);
             planes.find_points(&origins, &directions, &[t; 2], &mut points);
 
             let found = points.get(0);
@@ -212,8 +192,6 @@ mod tests {
             prop_assert!((found.position.as_dvec3() - target).length() < 0.1);
             prop_assert!((found.geometric_normal - interpolated.geometric_normal).length() < 1e-3);
             prop_assert_eq!(found.shading_normal, found.geometric_normal);
-            // A lane without a plane stays as it is.
-            prop_assert_eq!(points.get(1), interpolated);
         }
     }
 }
