@@ -26,6 +26,13 @@ pub struct FilterSampler {
     rows: Axis,
 }
 
+/// Draws positions for the samples of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct PixelFilter<'f> {
+    column: &'f Profile,
+    row: &'f Profile,
+}
+
 /// The filter along one axis of the film, for every distance to its two borders.
 #[derive(Clone, Debug)]
 struct Axis {
@@ -59,11 +66,21 @@ impl FilterSampler {
         }
     }
 
-    /// Draws a position for the pixel in column `x` and row `y` of the crop window from uniform numbers in [0, 1).
+    /// That of the pixel in column `x` and row `y` of the crop window.
     #[inline(always)]
-    pub fn sample(&self, x: u32, y: u32, u: [f32; 2]) -> FilterSample {
-        let column = self.columns.profile(x).sample(u[0]);
-        let row = self.rows.profile(y).sample(u[1]);
+    pub fn pixel(&self, x: u32, y: u32) -> PixelFilter<'_> {
+        PixelFilter {
+            column: self.columns.profile(x),
+            row: self.rows.profile(y),
+        }
+    }
+}
+
+impl PixelFilter<'_> {
+    /// Draws a position from uniform numbers in [0, 1).
+    #[inline(always)]
+    pub fn sample(&self, u: [f32; 2]) -> FilterSample {
+        let (column, row) = (self.column.sample(u[0]), self.row.sample(u[1]));
         FilterSample {
             offset: Vec2::new(column.offset, row.offset),
             weight: column.weight * row.weight,
@@ -219,7 +236,7 @@ mod tests {
                 let (mut sum, mut weights) = (0.0, 0.0);
                 let n = 100_000;
                 for _ in 0..n {
-                    let sample = sampler.sample(pixel, 2, random.uniform_2d());
+                    let sample = sampler.pixel(pixel, 2).sample(random.uniform_2d());
                     let x = pixel as f32 + 0.5 + sample.offset.x;
                     assert!(
                         (0.0..=7.0).contains(&x),
@@ -253,6 +270,6 @@ mod tests {
         let mut film = film(ReconstructionFilter::Tent { radius: 1.5 });
         film.sample_border = true;
         let sampler = FilterSampler::new(&film);
-        assert!(sampler.sample(0, 0, [0.0, 0.5]).offset.x < -1.4);
+        assert!(sampler.pixel(0, 0).sample([0.0, 0.5]).offset.x < -1.4);
     }
 }

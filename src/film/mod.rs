@@ -12,7 +12,7 @@ mod tiles;
 mod whole_file;
 
 pub use exr_file::{ExrMoments, ExrOptions, read_exr, read_exr_variance, write_exr};
-pub use filter::{FilterSample, FilterSampler};
+pub use filter::{FilterSample, FilterSampler, PixelFilter};
 pub use image::{FilmFileError, Image};
 pub use pixels::TilePixels;
 pub use png_file::{srgb_bytes, write_png, write_rgb8};

@@ -9,7 +9,7 @@ use super::batch::{CameraPaths, Segments};
 use super::engine::{Engine, TileJob};
 use super::lineage::first_births;
 use super::variant::{Scattering, Variant, carries_points};
-use crate::film::FilmTile;
+use crate::film::{FilmTile, PixelFilter};
 use crate::lanes::CHUNK;
 use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
 use crate::scene::{CameraRayLanes, Refraction};
@@ -30,8 +30,6 @@ pub(super) fn start<C: Colour, V: Variant>(
     segments: &mut Segments<C>,
 ) {
     let has_lens = engine.camera.has_lens();
-    let crop = engine.scene.film.crop;
-    let corner = Vec2::new(crop.x as f32, crop.y as f32);
     let count = paths.restart(pixels.clone(), job.samples);
     paths.find_sequences(sampler);
     let carries_points = carries_points::<V>(sampler);
@@ -43,6 +41,7 @@ pub(super) fn start<C: Colour, V: Variant>(
     let mut raster = [[0.0; CHUNK]; 2];
     let mut rays = CameraRayLanes::new();
     let mut next = Sample::default();
+    let mut pixel = Pixel::of(engine, tile, pixels.start as usize);
     for start in (0..count).step_by(CHUNK) {
         let chunk = start..count.min(start + CHUNK);
         if sampler.has_sequences() {
@@ -73,12 +72,13 @@ pub(super) fn start<C: Colour, V: Variant>(
             &mut paths.wavelength_draw,
         );
         for lane in 0..chunk.len() {
-            let (x, y) = tile.position(pixels.start as usize + next.pixel);
+            if next.sample == 0 {
+                pixel = Pixel::of(engine, tile, pixels.start as usize + next.pixel);
+            }
             next.advance(job.samples);
-            let film = engine.filter.sample(x, y, [film_u[lane], film_v[lane]]);
+            let film = pixel.filter.sample([film_u[lane], film_v[lane]]);
             paths.filter_weight.push(film.weight);
-            let centre = corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-            [raster[0][lane], raster[1][lane]] = (centre + film.offset).to_array();
+            [raster[0][lane], raster[1][lane]] = (pixel.centre + film.offset).to_array();
         }
         engine.camera.rays(&raster, &lens_numbers, &mut rays);
         rays.copy_to(segments.rays.as_mut(), chunk);
@@ -97,6 +97,27 @@ pub(super) fn start<C: Colour, V: Variant>(
     }
     engine.emission.prepare(paths);
     V::Scattering::prepare(engine, paths);
+}
+
+/// A pixel on the film.
+struct Pixel<'f> {
+    /// Its centre in raster space, in pixels from the corner of the whole film.
+    centre: Vec2,
+    filter: PixelFilter<'f>,
+}
+
+impl<'f> Pixel<'f> {
+    /// That with this index in the tile.
+    #[inline(always)]
+    fn of(engine: &'f Engine, tile: &FilmTile, index: usize) -> Self {
+        let (x, y) = tile.position(index);
+        let crop = engine.scene.film.crop;
+        let corner = Vec2::new(crop.x as f32, crop.y as f32);
+        Self {
+            centre: corner + Vec2::new(x as f32 + 0.5, y as f32 + 0.5),
+            filter: engine.filter.pixel(x, y),
+        }
+    }
 }
 
 /// A sample of a pixel, both numbered within the batch.
