@@ -62,3 +62,34 @@ impl ColourTable {
         values[path * self.curves.len() + number]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::{Rgb, Spectral, Wavelengths};
+
+    #[test]
+    fn few_colours_are_prepared_and_many_are_not() {
+        let mut table = ColourTable::new(2);
+        let curves = [0.25, 0.5, 0.75].map(|r| SpectralCurve::rgb_reflectance([r, 0.5, 0.1]).unwrap());
+        assert_eq!(table.number_of(&curves[0]), 0);
+        assert_eq!(table.number_of(&curves[1]), 1);
+        assert_eq!(table.number_of(&curves[0]), 0);
+        let wavelengths: Vec<_> = [0.1, 0.6, 0.9].map(Wavelengths::<4>::sample).into();
+        let mut values = Vec::new();
+        table.prepare::<Spectral<4>>(&wavelengths, &mut values);
+        for (path, wavelengths) in wavelengths.iter().enumerate() {
+            for (number, curve) in curves[..2].iter().enumerate() {
+                let value = table.prepared(&values, path, number);
+                assert_eq!(value, curve.evaluate(wavelengths));
+            }
+        }
+        // In three channels they are the same on every path.
+        assert!(!table.is_prepared::<Rgb>());
+
+        table.number_of(&curves[2]);
+        assert!(!table.is_prepared::<Spectral<4>>());
+        table.prepare::<Spectral<4>>(&wavelengths, &mut values);
+        assert!(values.is_empty());
+    }
+}

@@ -89,3 +89,56 @@ impl ShapeTable {
         self.entries.get(geometry as usize).unwrap_or(&self.miss)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::LoadOptions;
+
+    /// A red rectangle seen from its front alone, a lamp of no bsdf, and a two-sided one with a sphere of the same red; all in a
+    /// constant light.
+    const SCENE: &str = r#"<scene version="3.0.0">
+        <sensor type="perspective"/>
+        <bsdf type="diffuse" id="red"><rgb name="reflectance" value="0.5, 0.1, 0.1"/></bsdf>
+        <shape type="rectangle"><ref id="red"/></shape>
+        <shape type="rectangle"><emitter type="area"><rgb name="radiance" value="1"/></emitter></shape>
+        <shape type="rectangle"><bsdf type="twosided">
+            <bsdf type="diffuse"><rgb name="reflectance" value="0.25"/></bsdf>
+            <ref id="red"/>
+        </bsdf></shape>
+        <shape type="sphere"><ref id="red"/></shape>
+        <emitter type="constant"/>
+    </scene>"#;
+
+    #[test]
+    fn every_side_has_its_reflectance_and_every_shape_its_emitter() {
+        let scene = Scene::from_xml(SCENE, &LoadOptions::default()).unwrap();
+        let table = ShapeTable::new(&scene, Some(1));
+        let sides = |shape| [1.0, -1.0].map(|cosine| table.entry(shape).reflectance(cosine));
+        assert_eq!(sides(0), [Some(0), None]);
+        assert_eq!(sides(1), [None, None]);
+        assert_eq!(sides(2), [Some(1), Some(0)]);
+        assert_eq!(sides(3), [Some(0), None]);
+        assert_eq!(sides(4), [None, None]);
+        // Edge-on, and where directions are no numbers, there is no side.
+        assert_eq!(table.entry(2).reflectance(0.0), None);
+        assert_eq!(table.entry(2).reflectance(f32::NAN), None);
+        assert_eq!(table.reflectances.curve(1).rgb(), [0.25; 3]);
+
+        let emitters = [0, 1, 2, 3, u32::MAX].map(|shape| table.entry(shape).emitter());
+        assert_eq!(emitters, [None, Some(0), None, None, Some(1)]);
+    }
+
+    #[test]
+    fn triangles_of_all_meshes_have_planes_of_their_own() {
+        let scene = Scene::from_xml(SCENE, &LoadOptions::default()).unwrap();
+        let table = ShapeTable::new(&scene, None);
+        let numbers = [0, 1, 2].map(|shape| [0, 1].map(|triangle| table.entry(shape).plane(triangle)));
+        assert_eq!(numbers, [[0, 1], [2, 3], [4, 5]]);
+        for without in [3, u32::MAX] {
+            let plane = table.entry(without).plane(7);
+            assert_eq!(plane, Planes::NONE);
+            assert_eq!(scene.planes.get(plane), None);
+        }
+    }
+}
