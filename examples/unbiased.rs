@@ -16,7 +16,7 @@ use cohort::{
 };
 
 /// The image is so many pixels wide and high.
-const SIDE: u32 = 48;
+const SIDE: i64 = 48;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -26,10 +26,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let samples: u32 = arguments.next().map_or(Ok(32), |text| text.parse())?;
 
     let options = LoadOptions {
-        definitions: vec![("res".into(), SIDE.to_string())],
         models: std::env::var_os("COHORT_MODELS").map(Into::into),
+        ..LoadOptions::default()
     };
-    let scene = Arc::new(Scene::load(scene, &options)?);
+    let mut scene = Scene::load(scene, &options)?;
+    scene.film = scene.film.resized(SIDE, SIDE)?;
+    let scene = Arc::new(scene);
     let settings = |strategy: StrategyKind, samples: u32| -> Result<Settings, Box<dyn Error>> {
         let samples = NonZeroU32::new(samples).ok_or("there must be samples and seeds")?;
         Ok(Settings {

@@ -24,12 +24,16 @@ fn settings(strategy: StrategyKind, budget: Budget, threads: usize) -> Settings 
 }
 
 fn render(strategy: StrategyKind, budget: Budget, threads: usize) -> Render {
-    prepared(settings(strategy, budget, threads))
+    prepared(40, settings(strategy, budget, threads))
 }
 
-fn prepared(settings: Settings) -> Render {
-    Render::new(many_emitters(40), settings).expect("the scene can be rendered")
+/// A square image with so many pixels on each side.
+fn prepared(side: u32, settings: Settings) -> Render {
+    Render::new(many_emitters(side), settings).expect("the scene can be rendered")
 }
+
+/// Four tiles, of which three are cut.
+const SIDE: u32 = 24;
 
 fn spp(samples: u32) -> Budget {
     Budget::SamplesPerPixel(NonZeroU32::new(samples).expect("there are samples"))
@@ -83,9 +87,9 @@ fn cases(budget: Budget, threads: usize) -> [(&'static str, Render); 3] {
         ..together()
     };
     [
-        ("roulette", prepared(alone)),
-        ("a population", prepared(together())),
-        ("a guided population that is sorted", prepared(learning)),
+        ("roulette", prepared(SIDE, alone)),
+        ("a population", prepared(SIDE, together())),
+        ("a guided population that is sorted", prepared(SIDE, learning)),
     ]
 }
 
@@ -105,11 +109,11 @@ fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) {
             // After these the growing passes end.
             [1, 2, 4, 8, 16, 32].map(film)
         };
+        let at_once = [3, 4].map(at_once);
         for threads in [1, 2] {
             let what = format!("{name} on {threads} threads");
             let (_, render) = &cases(budget, threads)[case];
             let mut states = [3, 4].map(|seed| render.start(seed));
-            let at_once = [3, 4].map(at_once);
             let mut within_a_pass = false;
             let is_short = |state: &RenderState| fewest_samples(state.film()) < 4;
             for slice in 1.. {
@@ -129,7 +133,8 @@ fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) {
             for (state, at_once) in states.iter_mut().zip(&at_once) {
                 assert_eq!(advance(render, state, spp(32)), Ended::Complete);
                 assert!(state.film() == &at_once[5], "{what}: 32 samples");
-                assert_eq!(state.statistics().camera_paths, 40 * 40 * 32);
+                let paths = u64::from(SIDE * SIDE) * 32;
+                assert_eq!(state.statistics().camera_paths, paths);
                 let before = state.clone();
                 assert_eq!(advance(render, state, spp(20)), Ended::Complete);
                 assert!(state.film() == before.film(), "{what}: it went on");
