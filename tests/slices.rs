@@ -89,7 +89,7 @@ fn cases(budget: Budget, threads: usize) -> [(&'static str, Render); 3] {
     [
         ("roulette", prepared(SIDE, alone)),
         ("a population", prepared(SIDE, together())),
-        ("a guided population that is sorted", prepared(SIDE, learning)),
+        ("a sorted, guided population", prepared(SIDE, learning)),
     ]
 }
 

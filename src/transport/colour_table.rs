@@ -71,7 +71,8 @@ mod tests {
     #[test]
     fn few_colours_are_prepared_and_many_are_not() {
         let mut table = ColourTable::new(2);
-        let curves = [0.25, 0.5, 0.75].map(|r| SpectralCurve::rgb_reflectance([r, 0.5, 0.1]).unwrap());
+        let curves =
+            [0.25, 0.5, 0.75].map(|r| SpectralCurve::rgb_reflectance([r, 0.5, 0.1]).unwrap());
         assert_eq!(table.number_of(&curves[0]), 0);
         assert_eq!(table.number_of(&curves[1]), 1);
         assert_eq!(table.number_of(&curves[0]), 0);

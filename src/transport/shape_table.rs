@@ -133,7 +133,8 @@ mod tests {
     fn triangles_of_all_meshes_have_planes_of_their_own() {
         let scene = Scene::from_xml(SCENE, &LoadOptions::default()).unwrap();
         let table = ShapeTable::new(&scene, None);
-        let numbers = [0, 1, 2].map(|shape| [0, 1].map(|triangle| table.entry(shape).plane(triangle)));
+        let numbers =
+            [0, 1, 2].map(|shape| [0, 1].map(|triangle| table.entry(shape).plane(triangle)));
         assert_eq!(numbers, [[0, 1], [2, 3], [4, 5]]);
         for without in [3, u32::MAX] {
             let plane = table.entry(without).plane(7);
