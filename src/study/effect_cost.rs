@@ -58,9 +58,12 @@ impl Cost {
 /// Goes on with a render for the time `slice`, at least until some camera paths are done, and returns the wall-clock time of each.
 fn seconds_per_path(render: &Render, state: &mut RenderState, slice: Duration) -> f64 {
     let (start, paths_before) = (state.duration(), state.statistics().camera_paths);
+    let mut until = start;
     loop {
-        let until = Budget::Time(state.duration() + slice);
-        render.advance(state, until, &StopFlag::new(), &());
+        // A batch is not begun where less than half of it would fit: if even one takes longer than a slice, as it may on a busy
+        // machine, there must be more time.
+        until += slice.max(until - start);
+        render.advance(state, Budget::Time(until), &StopFlag::new(), &());
         let paths = state.statistics().camera_paths - paths_before;
         if paths > 0 {
             return (state.duration() - start).as_secs_f64() / paths as f64;
@@ -71,6 +74,21 @@ fn seconds_per_path(render: &Render, state: &mut RenderState, slice: Duration) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::Settings;
+    use crate::scene::{LoadOptions, Scene};
+
+    /// Without an end, this would have none.
+    #[test]
+    fn slices_shorter_than_a_batch_are_enough() {
+        let scene = Scene::built_in(&LoadOptions::default()).unwrap();
+        let render = Render::new(scene.into(), Settings::default()).unwrap();
+        let mut state = render.start(0);
+        for _ in 0..3 {
+            let seconds = seconds_per_path(&render, &mut state, Duration::from_nanos(100));
+            assert!(seconds > 0.0);
+        }
+        assert!(state.statistics().camera_paths >= 3 * 256);
+    }
 
     #[test]
     fn quartiles_are_of_the_turns() {
