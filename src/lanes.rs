@@ -138,7 +138,7 @@ impl KeptLanes {
 pub(crate) fn append_kept<T: Copy>(column: &mut Vec<T>, lanes: &[T], kept: &KeptLanes) {
     match <&[T; CHUNK]>::try_from(lanes) {
         Ok(lanes) if kept.len() == CHUNK => column.extend_from_slice(lanes),
-        // Here too the compiler knows the length, and that no lane is outside.
+        // Though not all are kept, the compiler knows here that no lane is outside.
         Ok(lanes) => column.extend(kept.iter().map(|lane| lanes[lane])),
         Err(_) => column.extend(kept.iter().map(|lane| lanes[lane])),
     }

@@ -19,9 +19,11 @@ impl ColourTable {
         }
     }
 
-    /// The number of a colour, which becomes one of the table if it is none yet.
+    /// The number of a colour, which becomes one of the table if it is none yet. In a table with too many to be evaluated by every path,
+    /// the same colour may have several numbers: scenes can have thousands of materials, and nobody compares each with all.
     pub fn number_of(&mut self, curve: &SpectralCurve) -> usize {
-        let known = self.curves.iter().position(|known| known == curve);
+        let mut searched = self.curves.iter().take(self.most + 1);
+        let known = searched.position(|known| known == curve);
         known.unwrap_or_else(|| {
             self.curves.push(curve.clone());
             self.curves.len() - 1
@@ -88,7 +90,11 @@ mod tests {
         // In three channels they are the same on every path.
         assert!(!table.is_prepared::<Rgb>());
 
-        table.number_of(&curves[2]);
+        assert_eq!(table.number_of(&curves[2]), 2);
+        assert_eq!(table.number_of(&curves[1]), 1);
+        let other = SpectralCurve::constant_reflectance(0.5).unwrap();
+        let numbers = [0, 1].map(|_| table.number_of(&other));
+        assert!(numbers.iter().all(|&number| table.curve(number) == &other));
         assert!(!table.is_prepared::<Spectral<4>>());
         table.prepare::<Spectral<4>>(&wavelengths, &mut values);
         assert!(values.is_empty());

@@ -149,6 +149,7 @@ impl<C: Colour> LightChunk<C> {
             self.fetch_lamps(engine);
         }
         self.draw_lamps(positions, u, v);
+        // With one emitter, what it is need not be asked for every vertex.
         let only = engine.light_choice.only();
         let has_only_lamp = only.is_some_and(|only| engine.lamp(only).is_some());
         for (lane, i) in chunk.enumerate() {
