@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::light_sums::LightSums;
+use super::lobe::LobeSums;
 use super::mixture::MixtureSums;
+use super::moments::MomentSums;
 use super::square_warp::SIDE;
 use super::{
     CellTree, Insight, Insights, LightObservation, Observation, Observations, PixelObservation,
@@ -42,10 +44,9 @@ pub struct Experience {
 /// The sums of one cell and class of normals.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Sums {
-    count: f32,
-    value: f32,
-    square: f32,
-    cost: f32,
+    moments: MomentSums,
+    /// Of what was observed where surfaces have lobes.
+    lobes: Option<Box<LobeSums>>,
     mixture: MixtureSums,
     lights: LightSums,
     bins: [[BinSums; SIDE]; SIDE],
@@ -68,10 +69,10 @@ impl BinSums {
 
 impl Sums {
     fn add(&mut self, other: &Self, share: f32) {
-        self.count += share * other.count;
-        self.value += share * other.value;
-        self.square += share * other.square;
-        self.cost += share * other.cost;
+        self.moments.add(&other.moments, share);
+        if let Some(lobes) = &other.lobes {
+            self.lobes.get_or_insert_default().add(lobes, share);
+        }
         self.mixture.add(&other.mixture, share);
         self.lights.add(&other.lights, share);
         let bins = self.bins.as_flattened_mut().iter_mut();
@@ -81,10 +82,11 @@ impl Sums {
     }
 
     fn observe(&mut self, observation: &Observation) {
-        self.count += 1.0;
-        self.value += observation.value;
-        self.square += observation.value * observation.value;
-        self.cost += observation.cost;
+        self.moments.observe(observation);
+        if let Some(class) = observation.lobe {
+            let lobes = self.lobes.get_or_insert_default();
+            lobes.of(class).observe(observation);
+        }
         if let Some(odds) = &observation.odds {
             self.mixture.observe(odds, observation.value);
         }
@@ -99,18 +101,12 @@ impl Sums {
 
     /// What these sums say, filled up with [`OF_FAMILY`] observations like those of the `family`.
     fn insight(&self, family: &Self) -> Insight {
-        let filled = |own: f32, of_family: f32| {
-            let prior = ratio(of_family, family.count);
-            (own + OF_FAMILY * prior) / (self.count + OF_FAMILY)
-        };
         let radiance = self.means(family, |bin| bin.radiance);
         let square = self.means(family, |bin| bin.square);
-        let warp = SquareWarp::new(&radiance, family.count);
+        let warp = SquareWarp::new(&radiance, family.moments.count);
         let guides = warp.variance_left(&radiance, &square) < WORTH_GUIDING;
         Insight {
-            mean: filled(self.value, family.value),
-            square: filled(self.square, family.square),
-            cost: filled(self.cost, family.cost),
+            moments: self.moments.filled_up(OF_FAMILY, &family.moments.moments()),
             guides,
             mixed_share: family.mixture.best(),
             warp: if guides { warp } else { SquareWarp::UNIFORM },
@@ -120,7 +116,7 @@ impl Sums {
     /// The mean of what `sum` adds up, for each bin: filled up by the `family`, and that by the mean of all its bins.
     fn means(&self, family: &Self, sum: impl Fn(&BinSums) -> f32) -> [[f32; SIDE]; SIDE] {
         let of_family = family.bins.as_flattened();
-        let mean = ratio(of_family.iter().map(&sum).sum(), family.count);
+        let mean = ratio(of_family.iter().map(&sum).sum(), family.moments.count);
         let mut means = [[0.0; SIDE]; SIDE];
         let bins = self.bins.as_flattened().iter().zip(of_family);
         for (filled, (own, family)) in means.as_flattened_mut().iter_mut().zip(bins) {
@@ -198,7 +194,7 @@ impl Experience {
         let count = |places: &[u32]| {
             let counts = places.iter().filter(|&&place| place > 0);
             counts
-                .map(|&place| f64::from(self.sums[place as usize - 1].count))
+                .map(|&place| f64::from(self.sums[place as usize - 1].moments.count))
                 .sum()
         };
         let mut counts: Vec<f64> = self.places.chunks(FRAME_CLASSES).map(count).collect();
@@ -242,7 +238,11 @@ impl Experience {
                 &of_families[&family(address)],
             );
             insights.places[address] = insights.of_paths.len() as u32;
-            insights.of_paths.push(own.insight(family));
+            let insight = own.insight(family);
+            let lobes = own.lobes.as_ref();
+            let of_lobes = lobes.map(|lobes| Box::new(lobes.moments(&insight.moments)));
+            insights.of_lobes.push(of_lobes);
+            insights.of_paths.push(insight);
             insights.of_lights.push(own.lights.weights(&family.lights));
         }
         insights
@@ -252,7 +252,7 @@ impl Experience {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::learning::{Bin, GuidedShare, MixedDirection, Odds};
+    use crate::learning::{Bin, GuidedShare, LobeClass, MixedDirection, Moments, Odds};
     use crate::scene::ChosenGroup;
     use glam::Vec3;
 
@@ -268,6 +268,7 @@ mod tests {
     fn observation(address: u32, value: f32) -> Observation {
         Observation {
             address,
+            lobe: None,
             bin: Some(Bin::of([0.5, 0.9])),
             odds: None,
             radiance: 2.0 * value,
@@ -334,9 +335,12 @@ mod tests {
         for (address, value) in [(here, 1.0), (there, 5.0)] {
             let insight = &insights[places[address as usize] as usize];
             // Of the only cell of a family, nothing is filled up with something else.
-            assert_eq!(insight.mean, value);
-            assert_eq!(insight.square, value * value);
-            assert_eq!(insight.cost, 3.0 * value);
+            let expected = Moments {
+                mean: value,
+                square: value * value,
+                cost: 3.0 * value,
+            };
+            assert_eq!(insight.moments, expected);
         }
     }
 
@@ -354,11 +358,34 @@ mod tests {
             of_paths: insights,
             ..
         } = experience.insights(&tree);
-        let mean = |address: u32| insights[places[address as usize] as usize].mean;
+        let mean = |address: u32| insights[places[address as usize] as usize].moments.mean;
         let family = (96.0 + 8.0) / 97.0;
         assert!((mean(few) - (8.0 + OF_FAMILY * family) / (1.0 + OF_FAMILY)).abs() < 1e-5);
         assert!((mean(many) - (96.0 + OF_FAMILY * family) / (96.0 + OF_FAMILY)).abs() < 1e-5);
         assert_eq!(mean(apart), 1e6);
+    }
+
+    /// What a lobe sees is known apart, also where a cell was halved.
+    #[test]
+    fn lobes_are_told_apart() {
+        let mut tree = tree();
+        let address = address(&tree, 0.1);
+        let [bright, dark] = [glam::Vec3::X, glam::Vec3::NEG_X].map(LobeClass::of);
+        let seen = |lobe, value| Observation {
+            lobe: Some(lobe),
+            ..observation(address, value)
+        };
+        let of_both = (0..MOST_PER_CELL as u32).flat_map(|_| [seen(bright, 5.0), seen(dark, 1.0)]);
+        let mut experience = observed(of_both);
+        experience.refine(&mut tree);
+        assert_eq!(tree.cells(), 512 + 1);
+        let insights = experience.insights(&tree);
+        for half in [1, 2] {
+            assert_eq!(insights.of_paths[half].moments.mean, 3.0);
+            let lobes = insights.of_lobes[half].as_ref().expect("lobes were seen");
+            let mean = |lobe| lobes.of(lobe).mean;
+            assert!(mean(bright) > 4.99 && mean(dark) < 1.01);
+        }
     }
 
     #[test]
@@ -451,7 +478,7 @@ mod tests {
         assert_eq!(total(&experience), before);
         let count_at = |position| {
             let place = experience.places[address(&tree, position) as usize];
-            experience.sums[place as usize - 1].count
+            experience.sums[place as usize - 1].moments.count
         };
         assert_eq!(f64::from(count_at(0.1)), MOST_PER_CELL);
         assert_eq!(f64::from(count_at(0.01)), MOST_PER_CELL);
@@ -462,7 +489,11 @@ mod tests {
             ..
         } = experience.insights(&tree);
         assert_eq!(places.iter().filter(|&&place| place > 0).count(), 5);
-        assert!(insights[1..2].iter().all(|insight| insight.mean == 0.5));
+        assert!(
+            insights[1..2]
+                .iter()
+                .all(|insight| insight.moments.mean == 0.5)
+        );
     }
 
     #[test]

@@ -56,6 +56,7 @@ mod tests {
     fn tile(number: usize) -> Observations {
         let observation = |value| Observation {
             address: 3,
+            lobe: None,
             bin: None,
             odds: None,
             radiance: value,

@@ -3,7 +3,8 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::{CellTree, Experience, GuidedShare, PixelKnowledge, SquareWarp};
+use super::lobe::LobeMoments;
+use super::{CellTree, Experience, GuidedShare, LobeClass, Moments, PixelKnowledge, SquareWarp};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::sampling::{FRAME_CLASSES, Frame};
 use crate::scene::{GroupWeights, ImageSize};
@@ -17,12 +18,8 @@ const FIRST_HALVINGS: u32 = 3;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(32))]
 pub struct Insight {
-    /// The mean of what a path that goes on there brings back, for albedo 1.
-    pub mean: f32,
-    /// The mean of its square; 0 where nothing was observed.
-    pub square: f32,
-    /// What such a path costs, where a bounce costs 1.
-    pub cost: f32,
+    /// What paths that go on there bring back, wherever they come from.
+    pub moments: Moments,
     /// Whether directions gain by being drawn from where it comes.
     pub guides: bool,
     /// How many of them, at surfaces with broad lobes of their own; it means nothing where they do not gain.
@@ -34,9 +31,7 @@ pub struct Insight {
 impl Insight {
     /// Where nothing was observed.
     pub(super) const NONE: Self = Self {
-        mean: 0.0,
-        square: 0.0,
-        cost: 1.0,
+        moments: Moments::NONE,
         guides: false,
         mixed_share: GuidedShare::UNKNOWN,
         warp: SquareWarp::UNIFORM,
@@ -50,6 +45,8 @@ pub(super) struct Insights {
     pub places: Vec<u32>,
     /// What is known of paths that go on there.
     pub of_paths: Vec<Insight>,
+    /// The same for each class of lobes, where surfaces have any.
+    pub of_lobes: Vec<Option<Box<LobeMoments>>>,
     /// And of the groups of lights: apart, for both are asked for at different times, and these are so small that they stay in the cache.
     pub of_lights: Vec<GroupWeights>,
 }
@@ -60,6 +57,7 @@ impl Insights {
         Self {
             places: vec![0; addresses],
             of_paths: vec![Insight::NONE],
+            of_lobes: vec![None],
             of_lights: vec![GroupWeights::EQUAL],
         }
     }
@@ -125,6 +123,16 @@ impl Knowledge {
     #[inline(always)]
     pub fn insight(&self, number: u32) -> &Insight {
         &self.insights.of_paths[number as usize]
+    }
+
+    /// What paths bring back that go on where insight number `number` is, at a surface with lobes of class `lobe` if it has any.
+    #[inline(always)]
+    pub fn moments(&self, number: u32, lobe: Option<LobeClass>) -> &Moments {
+        let of_lobes = || self.insights.of_lobes[number as usize].as_ref();
+        match lobe.and_then(|class| Some(of_lobes()?.of(class))) {
+            Some(moments) => moments,
+            None => &self.insight(number).moments,
+        }
     }
 
     /// By how much the light of each group differs from what is guessed, where insight number `number` is.
@@ -204,6 +212,7 @@ mod tests {
     fn observation(address: u32, value: f32) -> Observation {
         Observation {
             address,
+            lobe: None,
             bin: None,
             odds: None,
             radiance: value,
@@ -219,7 +228,7 @@ mod tests {
         let address = knowledge.address(place, Vec3::X);
         assert_eq!(*knowledge.insight_at(place, Vec3::X), Insight::NONE);
         teach(&mut knowledge, vec![observation(address, 5.0)]);
-        let mean = |place, normal| knowledge.insight_at(place, normal).mean;
+        let mean = |place, normal| knowledge.insight_at(place, normal).moments.mean;
         assert_eq!(mean(place, Vec3::X), 5.0);
         assert_eq!(mean(place + 0.02, Vec3::new(0.8, 0.6, 0.0)), 5.0);
         let nothing = |place, normal| *knowledge.insight_at(place, normal) == Insight::NONE;
@@ -240,7 +249,7 @@ mod tests {
             let of_few = vec![observation(few, 30.0); 2];
             teach(&mut knowledge, [of_many, of_some, of_few].concat());
             let of = |place| knowledge.insight_at(place, Vec3::Y);
-            let means = places.map(|place| of(place).mean);
+            let means = places.map(|place| of(place).moments.mean);
             assert!(means[0] < 10.1 && means[0] > 9.9, "{lesson}: {means:?}");
             // At first it is of the family of the many.
             assert!(means[1] > 19.0 && means[1] < 20.1, "{lesson}: {means:?}");

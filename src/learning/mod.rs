@@ -8,7 +8,9 @@
 //! - [`cell_tree`]: space, divided where there are many observations
 //! - [`experience`]: sums of observations, for each cell and each of six classes of normals
 //! - [`gathering`]: observations of tiles, in their order
+//! - [`lobe`]: where the lobes of glossy surfaces point
 //! - [`mixture`]: how many directions are guided where surfaces have lobes of their own
+//! - [`moments`]: what paths bring back and cost
 //! - [`observation`]: what is observed
 //! - [`pixels`]: how bright the image is
 //! - [`reliance`]: which of it a render goes by
@@ -21,7 +23,9 @@ pub mod experience;
 pub mod gathering;
 pub mod knowledge;
 pub mod light_sums;
+pub mod lobe;
 pub mod mixture;
+pub mod moments;
 pub mod observation;
 pub mod pixels;
 pub mod reliance;
@@ -32,7 +36,9 @@ pub use experience::Experience;
 pub use gathering::{Gathering, Observations};
 use knowledge::Insights;
 pub use knowledge::{Insight, Knowledge};
+pub use lobe::LobeClass;
 pub use mixture::{GuidedShare, MixedDirection, Odds};
+pub use moments::Moments;
 pub use observation::{LightObservation, Observation, PixelObservation};
 pub use pixels::PixelKnowledge;
 pub use reliance::Reliance;

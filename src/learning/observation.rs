@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::lobe::LobeClass;
 use super::mixture::Odds;
 use super::square_warp::Bin;
 use crate::scene::ChosenGroup;
@@ -11,6 +12,8 @@ use crate::scene::ChosenGroup;
 pub struct Observation {
     /// Where the vertex was (see [`Knowledge::address`](super::Knowledge::address)).
     pub address: u32,
+    /// Where the lobes of its surface pointed, if it has any.
+    pub lobe: Option<LobeClass>,
     /// The direction of the segment, if it is one of those that are learned.
     pub bin: Option<Bin>,
     /// How likely the direction would have been with other shares of guided directions, where they are mixed with others.

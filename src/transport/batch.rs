@@ -7,7 +7,7 @@ use super::variant::{Scattering, Variant};
 use crate::embree::{Hits, Rays};
 use crate::film::FilmTile;
 use crate::lanes::{CHUNK, VectorColumn};
-use crate::learning::{Knowledge, LightObservation};
+use crate::learning::{Knowledge, LightObservation, LobeClass};
 use crate::room::{gather, make_room, resize};
 use crate::sampling::{PixelSequences, Ranks, Sampler, SequencePoint, SolidAnglePdf};
 use crate::scene::{HitCoordinates, Receiver, Refraction};
@@ -97,7 +97,9 @@ pub(super) struct Vertices<C: Colour, V: Variant> {
     pub clearance: Vec<f32>,
     /// Where observations go (see [`Knowledge::addresses`]). Empty where nothing is learned.
     pub address: Vec<u32>,
-    /// What was learned there (see [`Knowledge::insight`]). Empty likewise.
+    /// Where the lobes of the surface point. Empty likewise, and where no surface has any.
+    pub lobe: Vec<Option<LobeClass>>,
+    /// What was learned there (see [`Knowledge::insight`]). Empty where nothing is learned.
     pub insight: Vec<u32>,
     /// The segment that led here. Empty but where the render learns.
     pub segment: Vec<u32>,
@@ -270,6 +272,7 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
             normal: VectorColumn::default(),
             clearance: Vec::new(),
             address: Vec::new(),
+            lobe: Vec::new(),
             insight: Vec::new(),
             segment: Vec::new(),
             bsdf: Vec::new(),
@@ -309,6 +312,12 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
         }
     }
 
+    /// Where the lobes of a vertex's surface point, if it has any and something is learned.
+    #[inline(always)]
+    pub fn lobe(&self, i: usize) -> Option<LobeClass> {
+        self.lobe.get(i).copied().flatten()
+    }
+
     /// The clearances of a chunk of vertices, put into `lanes`; `None` where the scene has no instances.
     #[inline(always)]
     pub fn clearances<'l>(
@@ -338,6 +347,7 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
             self.clearance.clear();
         }
         self.address.clear();
+        self.lobe.clear();
         self.insight.clear();
         self.segment.clear();
         make_room(&mut self.bsdf, count);

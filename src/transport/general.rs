@@ -120,6 +120,13 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
     }
 
     #[inline]
+    fn lobe(&self) -> Option<Vec3> {
+        let Vec3 { x, y, z } = self.outgoing;
+        let mirrored = Vec3::new(-x, -y, z);
+        (self.shininess() > 0.0).then(|| self.frame.to_world(mirrored))
+    }
+
+    #[inline]
     fn has_smooth_lobe(&self) -> bool {
         self.bsdf.has_smooth_lobe()
     }

@@ -1,7 +1,7 @@
 //! Who descends from whom, and what each brought back: what a batch observes while the render learns.
 
 use super::batch::{CameraPaths, Segments};
-use crate::learning::{Bin, Observation, Observations, Odds, PixelObservation};
+use crate::learning::{Bin, LobeClass, Observation, Observations, Odds, PixelObservation};
 use crate::room::{make_room, resize};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -20,6 +20,8 @@ pub(super) struct Birth {
     pub parent: u32,
     /// The [address](crate::learning::Knowledge::address) of the vertex.
     pub address: u32,
+    /// Where the lobes of its surface point, if it has any.
+    pub lobe: Option<LobeClass>,
     /// The direction that it took, if it is one of those that are learned.
     pub bin: Option<Bin>,
     /// How likely that would have been with other shares of guided directions, where they are mixed with others.
@@ -123,6 +125,7 @@ impl Lineage {
             for ((birth, &light), &cost) in brought {
                 self.observed.segments.push(Observation {
                     address: birth.address,
+                    lobe: birth.lobe,
                     bin: birth.bin,
                     odds: birth.odds,
                     radiance: light * birth.per_radiance,

@@ -73,6 +73,11 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     }
 
     #[inline(always)]
+    fn lobe(&self) -> Option<Vec3> {
+        None
+    }
+
+    #[inline(always)]
     fn has_smooth_lobe(&self) -> bool {
         true
     }

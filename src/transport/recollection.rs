@@ -38,9 +38,10 @@ impl Recollection {
             resize(column, vertices.len());
         }
         let moments = mean.iter_mut().zip(&mut *square).zip(&mut *cost);
-        for (((mean, square), cost), &number) in moments.zip(&vertices.insight) {
-            let insight = knowledge.insight(number);
-            [*mean, *square, *cost] = [insight.mean, insight.square, insight.cost];
+        let places = vertices.insight.iter().enumerate();
+        for (((mean, square), cost), (i, &number)) in moments.zip(places) {
+            let known = knowledge.moments(number, vertices.lobe(i));
+            [*mean, *square, *cost] = [known.mean, known.square, known.cost];
         }
         for (brightness, path) in brightness.iter_mut().zip(&vertices.path) {
             *brightness = paths.brightness[(path / paths.samples) as usize];

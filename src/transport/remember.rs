@@ -3,9 +3,9 @@
 use multiversion::multiversion;
 
 use super::batch::Vertices;
-use super::variant::Variant;
+use super::variant::{Scattering, Variant};
 use crate::lanes::{CHUNK, VectorLanes};
-use crate::learning::Knowledge;
+use crate::learning::{Knowledge, LobeClass};
 use crate::room::make_room;
 use crate::spectrum::Colour;
 
@@ -34,5 +34,11 @@ pub(super) fn remember<C: Colour, V: Variant>(
             .iter()
             .map(|&address| knowledge.insight_number(address));
         vertices.insight.extend(insights);
+    }
+    if V::CHOOSES_LOBES {
+        make_room(&mut vertices.lobe, count);
+        let lobes = vertices.bsdf.iter().map(Scattering::lobe);
+        let classes = lobes.map(|lobe| lobe.map(LobeClass::of));
+        vertices.lobe.extend(classes);
     }
 }

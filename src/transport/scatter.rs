@@ -131,6 +131,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
                 Birth {
                     parent: vertices.segment[parent],
                     address: vertices.address[parent],
+                    lobe: vertices.lobe(parent),
                     bin: places.bin(lane),
                     odds: guidance.odds(lane, &places, samples.pdf[lane]),
                     per_radiance: 1.0 / throughputs[lane].mean(),

@@ -186,6 +186,9 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
     /// See [`Bsdf::shininess`](crate::scene::Bsdf::shininess).
     fn shininess(&self) -> f32;
 
+    /// The unit direction (world space) in which a mirror would send on the path, if what the surface does with it depends on where it comes from.
+    fn lobe(&self) -> Option<Vec3>;
+
     /// Whether next-event estimation can find light here: not where all lobes are discrete.
     fn has_smooth_lobe(&self) -> bool;
 
