@@ -126,8 +126,7 @@ fn efficient_counts(learned: &Learned, rule: EfficientCounts, shininess: &[f32],
 /// The number of children at a vertex that passes light on in discrete directions, where `efficient` would be right on average over all directions, and
 /// `before_lessons` without having learned.
 ///
-/// What goes on there depends on direction more than on place, and of that nothing was learned: no path is split, and none given up more readily than without
-/// lessons.
+/// What goes on there depends on direction, and what was learned is a mean over many: no path is split, and none given up more readily than without lessons.
 #[inline(always)]
 pub(super) fn of_discrete_directions(efficient: f32, before_lessons: f32) -> f32 {
     let at_most_one = if efficient < 1.0 { efficient } else { 1.0 };
