@@ -1,134 +1,28 @@
-//! Sums of what was observed.
+//! All that was observed, place by place.
 
 use serde::{Deserialize, Serialize};
 
-use super::light_sums::LightSums;
-use super::lobe::LobeSums;
-use super::mixture::MixtureSums;
-use super::moments::MomentSums;
-use super::square_warp::SIDE;
-use super::{
-    CellTree, Insight, Insights, LightObservation, Observation, Observations, PixelObservation,
-    SquareWarp,
-};
+use super::place_sums::PlaceSums;
+use super::{CellTree, Insights, LightObservation, Observation, Observations, PixelObservation};
 use crate::sampling::FRAME_CLASSES;
 
 /// A cell is halved when more observations than this are in it: some dozens for each bin of the normals that it has.
 const MOST_PER_CELL: f64 = 6000.0;
 
-/// The most cells: some 100 MB.
+/// The most cells: some 100 MB, and two thirds more where all surfaces have lobes.
 const MOST_CELLS: u32 = 1 << 14;
 
 /// Halvings above a cell, two along each axis, to the node with whose mean that of the cell is filled up.
 const TO_FAMILY: u8 = 6;
-
-/// How many observations of its family each bin of a cell is filled up with.
-const OF_FAMILY: f32 = 4.0;
-
-/// How many observations of its own mean each bin of a family is filled up with.
-const OF_MEAN: f32 = 2.0;
-
-/// Directions are guided where so much of the variance at most is left by it: it takes time, and where light comes from everywhere it brings nothing.
-const WORTH_GUIDING: f32 = 0.9;
 
 /// All observations so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Experience {
     /// Which sums belong to an address, counted from 1; 0 while nothing was observed there.
     places: Vec<u32>,
-    sums: Vec<Sums>,
+    sums: Vec<PlaceSums>,
     /// Of each pixel, row by row.
     pixels: Vec<PixelObservation>,
-}
-
-/// The sums of one cell and class of normals.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Sums {
-    moments: MomentSums,
-    /// Of what was observed where surfaces have lobes.
-    lobes: Option<Box<LobeSums>>,
-    mixture: MixtureSums,
-    lights: LightSums,
-    bins: [[BinSums; SIDE]; SIDE],
-}
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct BinSums {
-    count: f32,
-    radiance: f32,
-    square: f32,
-}
-
-impl BinSums {
-    fn add(&mut self, other: Self, share: f32) {
-        self.count += share * other.count;
-        self.radiance += share * other.radiance;
-        self.square += share * other.square;
-    }
-}
-
-impl Sums {
-    fn add(&mut self, other: &Self, share: f32) {
-        self.moments.add(&other.moments, share);
-        if let Some(lobes) = &other.lobes {
-            self.lobes.get_or_insert_default().add(lobes, share);
-        }
-        self.mixture.add(&other.mixture, share);
-        self.lights.add(&other.lights, share);
-        let bins = self.bins.as_flattened_mut().iter_mut();
-        for (bin, other) in bins.zip(other.bins.as_flattened()) {
-            bin.add(*other, share);
-        }
-    }
-
-    fn observe(&mut self, observation: &Observation) {
-        self.moments.observe(observation);
-        if let Some(class) = observation.lobe {
-            let lobes = self.lobes.get_or_insert_default();
-            lobes.of(class).observe(observation);
-        }
-        if let Some(odds) = &observation.odds {
-            self.mixture.observe(odds, observation.value);
-        }
-        if let Some(bin) = observation.bin {
-            let [row, column] = bin.place();
-            let bin = &mut self.bins[row][column];
-            bin.count += 1.0;
-            bin.radiance += observation.radiance;
-            bin.square += observation.radiance * observation.radiance;
-        }
-    }
-
-    /// What these sums say, filled up with [`OF_FAMILY`] observations like those of the `family`.
-    fn insight(&self, family: &Self) -> Insight {
-        let radiance = self.means(family, |bin| bin.radiance);
-        let square = self.means(family, |bin| bin.square);
-        let warp = SquareWarp::new(&radiance, family.moments.count);
-        let guides = warp.variance_left(&radiance, &square) < WORTH_GUIDING;
-        Insight {
-            moments: self.moments.filled_up(OF_FAMILY, &family.moments.moments()),
-            guides,
-            mixed_share: family.mixture.best(),
-            warp: if guides { warp } else { SquareWarp::UNIFORM },
-        }
-    }
-
-    /// The mean of what `sum` adds up, for each bin: filled up by the `family`, and that by the mean of all its bins.
-    fn means(&self, family: &Self, sum: impl Fn(&BinSums) -> f32) -> [[f32; SIDE]; SIDE] {
-        let of_family = family.bins.as_flattened();
-        let mean = ratio(of_family.iter().map(&sum).sum(), family.moments.count);
-        let mut means = [[0.0; SIDE]; SIDE];
-        let bins = self.bins.as_flattened().iter().zip(of_family);
-        for (filled, (own, family)) in means.as_flattened_mut().iter_mut().zip(bins) {
-            let of_family = (sum(family) + OF_MEAN * mean) / (family.count + OF_MEAN);
-            *filled = (sum(own) + OF_FAMILY * of_family) / (own.count + OF_FAMILY);
-        }
-        means
-    }
-}
-
-fn ratio(sum: f32, count: f32) -> f32 {
-    if count > 0.0 { sum / count } else { 0.0 }
 }
 
 impl Experience {
@@ -175,14 +69,14 @@ impl Experience {
     }
 
     /// The sums of an address.
-    fn sums_at(&mut self, address: u32) -> &mut Sums {
+    fn sums_at(&mut self, address: u32) -> &mut PlaceSums {
         let address = address as usize;
         if address >= self.places.len() {
             self.places.resize(address + 1, 0);
         }
         let place = &mut self.places[address];
         if *place == 0 {
-            self.sums.push(Sums::default());
+            self.sums.push(PlaceSums::default());
             *place = self.sums.len() as u32;
         }
         &mut self.sums[*place as usize - 1]
@@ -208,7 +102,7 @@ impl Experience {
                     places.push(0);
                     continue;
                 }
-                let mut half = Sums::default();
+                let mut half = PlaceSums::default();
                 half.add(&sums[place as usize - 1], 0.5);
                 sums[place as usize - 1] = half.clone();
                 sums.push(half);
@@ -220,7 +114,8 @@ impl Experience {
     /// What is to be learned from all that.
     pub(super) fn insights(&self, tree: &CellTree) -> Insights {
         let families = tree.families(TO_FAMILY);
-        let mut of_families: std::collections::BTreeMap<(u32, usize), Sums> = Default::default();
+        let mut of_families: std::collections::BTreeMap<(u32, usize), PlaceSums> =
+            Default::default();
         let observed = self
             .places
             .iter()
@@ -239,9 +134,7 @@ impl Experience {
             );
             insights.places[address] = insights.of_paths.len() as u32;
             let insight = own.insight(family);
-            let lobes = own.lobes.as_ref();
-            let of_lobes = lobes.map(|lobes| Box::new(lobes.moments(&insight.moments)));
-            insights.of_lobes.push(of_lobes);
+            insights.of_lobes.push(own.of_lobes(&insight.moments));
             insights.of_paths.push(insight);
             insights.of_lights.push(own.lights.weights(&family.lights));
         }
@@ -252,6 +145,8 @@ impl Experience {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learning::light_sums::LightSums;
+    use crate::learning::place_sums::OF_FAMILY;
     use crate::learning::{Bin, GuidedShare, LobeClass, MixedDirection, Moments, Odds};
     use crate::scene::ChosenGroup;
     use glam::Vec3;
@@ -310,8 +205,8 @@ mod tests {
     }
 
     /// All sums of a list added up.
-    fn total(experience: &Experience) -> Sums {
-        let mut total = Sums::default();
+    fn total(experience: &Experience) -> PlaceSums {
+        let mut total = PlaceSums::default();
         for sums in &experience.sums {
             total.add(sums, 1.0);
         }

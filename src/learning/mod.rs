@@ -6,13 +6,14 @@
 //! for any number of threads.
 //!
 //! - [`cell_tree`]: space, divided where there are many observations
-//! - [`experience`]: sums of observations, for each cell and each of six classes of normals
+//! - [`experience`]: all observations, for each cell and each of six classes of normals
 //! - [`gathering`]: observations of tiles, in their order
 //! - [`lobe`]: where the lobes of glossy surfaces point
 //! - [`mixture`]: how many directions are guided where surfaces have lobes of their own
 //! - [`moments`]: what paths bring back and cost
 //! - [`observation`]: what is observed
 //! - [`pixels`]: how bright the image is
+//! - [`place_sums`]: the sums of one place, and what they say of it
 //! - [`reliance`]: which of it a render goes by
 //! - [`square_warp`]: a histogram that warps the unit square from which directions are drawn
 //! - [`light_sums`]: which groups of lights send more than is guessed
@@ -28,6 +29,7 @@ pub mod mixture;
 pub mod moments;
 pub mod observation;
 pub mod pixels;
+pub mod place_sums;
 pub mod reliance;
 pub mod square_warp;
 
