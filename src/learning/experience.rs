@@ -9,7 +9,7 @@ use crate::sampling::FRAME_CLASSES;
 /// A cell is halved when more observations than this are in it: some dozens for each bin of the normals that it has.
 const MOST_PER_CELL: f64 = 6000.0;
 
-/// The most cells: some 100 MB, and two thirds more where all surfaces have lobes.
+/// The most cells: some 100 MB, and more where surfaces have lobes.
 const MOST_CELLS: u32 = 1 << 14;
 
 /// Halvings above a cell, two along each axis, to the node with whose mean that of the cell is filled up.

@@ -12,7 +12,7 @@ use crate::scene::ChosenGroup;
 pub struct Observation {
     /// Where the vertex was (see [`Knowledge::address`](super::Knowledge::address)).
     pub address: u32,
-    /// Where the lobes of its surface pointed, if it has any.
+    /// Where the lobes of its surface pointed, if it has any and counts are learned.
     pub lobe: Option<LobeClass>,
     /// The direction of the segment, if it is one of those that are learned.
     pub bin: Option<Bin>,

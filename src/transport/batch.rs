@@ -97,7 +97,7 @@ pub(super) struct Vertices<C: Colour, V: Variant> {
     pub clearance: Vec<f32>,
     /// Where observations go (see [`Knowledge::addresses`]). Empty where nothing is learned.
     pub address: Vec<u32>,
-    /// Where the lobes of the surface point. Empty likewise, and where no surface has any.
+    /// Where the lobes of the surface point. Empty where no counts are learned, and where no surface has lobes.
     pub lobe: Vec<Option<LobeClass>>,
     /// What was learned there (see [`Knowledge::insight`]). Empty where nothing is learned.
     pub insight: Vec<u32>,
@@ -312,7 +312,7 @@ impl<C: Colour, V: Variant> Vertices<C, V> {
         }
     }
 
-    /// Where the lobes of a vertex's surface point, if it has any and something is learned.
+    /// Where the lobes of a vertex's surface point, if it has any and counts are learned.
     #[inline(always)]
     pub fn lobe(&self, i: usize) -> Option<LobeClass> {
         self.lobe.get(i).copied().flatten()

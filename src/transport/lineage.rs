@@ -20,7 +20,7 @@ pub(super) struct Birth {
     pub parent: u32,
     /// The [address](crate::learning::Knowledge::address) of the vertex.
     pub address: u32,
-    /// Where the lobes of its surface point, if it has any.
+    /// Where the lobes of its surface point, if it has any and counts are learned.
     pub lobe: Option<LobeClass>,
     /// The direction that it took, if it is one of those that are learned.
     pub bin: Option<Bin>,

@@ -179,7 +179,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
                 self.lineage.set_seen_aside();
             }
             if let Some(knowledge) = job.knowledge.filter(|_| remembers) {
-                remember::remember(knowledge, &mut self.vertices);
+                remember::remember(knowledge, memory.is_some(), &mut self.vertices);
             }
             stopwatch.lap(Stage::Emission, &mut self.statistics.stages);
             self.statistics.vertices += self.vertices.len() as u64;

@@ -9,13 +9,14 @@ use crate::learning::{Knowledge, LobeClass};
 use crate::room::make_room;
 use crate::spectrum::Colour;
 
-/// Fills the columns of `vertices` that say where observations go, and what is known there.
+/// Fills the columns of `vertices` that say where observations go, and what is known there; and, if it `tells_lobes`, where the lobes of surfaces point.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
 pub(super) fn remember<C: Colour, V: Variant>(
     knowledge: &Knowledge,
+    tells_lobes: bool,
     vertices: &mut Vertices<C, V>,
 ) {
     let count = vertices.len();
@@ -35,7 +36,7 @@ pub(super) fn remember<C: Colour, V: Variant>(
             .map(|&address| knowledge.insight_number(address));
         vertices.insight.extend(insights);
     }
-    if V::CHOOSES_LOBES {
+    if V::CHOOSES_LOBES && tells_lobes {
         make_room(&mut vertices.lobe, count);
         let lobes = vertices.bsdf.iter().map(Scattering::lobe);
         let classes = lobes.map(|lobe| lobe.map(LobeClass::of));
