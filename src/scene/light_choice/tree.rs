@@ -21,8 +21,16 @@ pub struct LightTree {
 
 #[derive(Clone, Debug)]
 struct Node {
-    lights: LightLanes<WIDTH>,
+    lights: NodeLights,
     children: [Child; WIDTH],
+}
+
+/// The lights of a node's children.
+#[derive(Clone, Debug)]
+enum NodeLights {
+    /// There is one child, and nothing to choose: a lamp beside a sky is as usual as anything.
+    One(LightLanes<1>),
+    Several(LightLanes<WIDTH>),
 }
 
 /// Lights of the tree.
@@ -58,12 +66,12 @@ impl LightTree {
     /// Adds the nodes of a branch at the end of `way`; returns the number of the first of them.
     fn add(&mut self, branch: Branch, most: usize, way: &mut Vec<u8>) -> u32 {
         let own = self.nodes.len();
+        let branches = branch.open(most);
         self.nodes.push(Node {
-            lights: LightLanes::none(),
+            lights: NodeLights::of(&branches),
             children: [Child::None; WIDTH],
         });
-        for (lane, branch) in branch.open(most).into_iter().enumerate() {
-            self.nodes[own].lights.put(lane, branch.bounds());
+        for (lane, branch) in branches.into_iter().enumerate() {
             way.push(lane as u8);
             self.nodes[own].children[lane] = match branch {
                 Branch::Leaf(light) => {
@@ -102,16 +110,28 @@ impl LightTree {
             return;
         };
         let node = &self.nodes[node as usize];
-        let Some(shares) = node.shares(receiver) else {
-            descent.child = Child::None;
-            return;
-        };
-        let (lane, remainder) = pick(&shares, descent.u);
-        *descent = Descent {
-            child: node.children[lane],
-            probability: descent.probability * shares[lane],
-            u: remainder,
-        };
+        match &node.lights {
+            NodeLights::One(light) => {
+                let can_arrive = can_arrive(light, receiver);
+                descent.child = if can_arrive {
+                    node.children[0]
+                } else {
+                    Child::None
+                };
+            }
+            NodeLights::Several(lights) => {
+                let Some(shares) = shares(&lights.importances(receiver)) else {
+                    descent.child = Child::None;
+                    return;
+                };
+                let (lane, remainder) = pick(&shares, descent.u);
+                *descent = Descent {
+                    child: node.children[lane],
+                    probability: descent.probability * shares[lane],
+                    u: remainder,
+                };
+            }
+        }
     }
 
     /// The probability with which [`Self::step`] comes to the end of the `way` from a `child`, which was itself chosen with that `probability`.
@@ -185,19 +205,55 @@ pub fn sum(lanes: &[f32; WIDTH]) -> f32 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
+impl NodeLights {
+    fn of(branches: &[Branch]) -> Self {
+        match branches {
+            [one] => Self::One(lanes(std::slice::from_ref(one))),
+            several => Self::Several(lanes(several)),
+        }
+    }
+}
+
+fn lanes<const N: usize>(branches: &[Branch]) -> LightLanes<N> {
+    let mut lanes = LightLanes::none();
+    for (lane, branch) in branches.iter().enumerate() {
+        lanes.put(lane, branch.bounds());
+    }
+    lanes
+}
+
 impl Node {
     /// The probabilities of the children; `None` where none of their lights can arrive.
     #[inline(always)]
     fn shares(&self, receiver: &Receiver) -> Option<[f32; WIDTH]> {
-        let mut shares = self.lights.importances(receiver);
-        // Of numbers up to 10^30 eight are no infinite sum.
-        let total = sum(&shares);
-        let possible = sum(&shares.map(|share| f32::from(u8::from(share > 0.0))));
-        let per_importance = (1.0 - possible * LEAST_SHARE) / total;
-        for share in &mut shares {
-            let mixed = *share * per_importance + LEAST_SHARE;
-            *share = if *share > 0.0 { mixed } else { 0.0 };
+        match &self.lights {
+            NodeLights::One(light) => {
+                let mut shares = [0.0; WIDTH];
+                shares[0] = 1.0;
+                can_arrive(light, receiver).then_some(shares)
+            }
+            NodeLights::Several(lights) => shares(&lights.importances(receiver)),
         }
-        (total > 0.0).then_some(shares)
     }
+}
+
+/// Whether anything can arrive from a light.
+#[inline(always)]
+fn can_arrive(light: &LightLanes<1>, receiver: &Receiver) -> bool {
+    light.importances(receiver) > [0.0]
+}
+
+/// The probabilities of lights with these `importances`; `None` where all are 0.
+#[inline(always)]
+fn shares(importances: &[f32; WIDTH]) -> Option<[f32; WIDTH]> {
+    let mut shares = *importances;
+    // Of numbers up to 10^30 eight are no infinite sum.
+    let total = sum(&shares);
+    let possible = sum(&shares.map(|share| f32::from(u8::from(share > 0.0))));
+    let per_importance = (1.0 - possible * LEAST_SHARE) / total;
+    for share in &mut shares {
+        let mixed = *share * per_importance + LEAST_SHARE;
+        *share = if *share > 0.0 { mixed } else { 0.0 };
+    }
+    (total > 0.0).then_some(shares)
 }
