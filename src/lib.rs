@@ -67,6 +67,7 @@
 
 pub mod embree;
 pub mod film;
+mod functions;
 mod lanes;
 pub mod learning;
 pub mod models;

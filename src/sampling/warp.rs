@@ -5,6 +5,7 @@ use std::f32::consts::{FRAC_1_PI, FRAC_PI_4, PI};
 use glam::{Vec2, Vec3};
 
 use super::SolidAnglePdf;
+use crate::functions::{atan_of_at_most_one, sin_cos_of_eighth, sin_cos_of_turn};
 
 /// A uniform point of the unit disk, by the concentric map (Shirley and Chiu 1997).
 #[inline(always)]
@@ -23,16 +24,6 @@ pub fn disk(u: [f32; 2]) -> Vec2 {
         // The angle is pi/2 less the one above.
         Vec2::new(across, along)
     }
-}
-
-/// Sine and cosine of an angle between -pi/4 and pi/4, within two units of the last place: the minimax polynomials of
-/// Cephes (`sinf.c`, Moshier 1992). Unlike the system's functions they are the same everywhere, and vectorise.
-#[inline(always)]
-fn sin_cos_of_eighth(angle: f32) -> (f32, f32) {
-    let z = angle * angle;
-    let sin = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * angle + angle;
-    let cos = ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0;
-    (sin, cos)
 }
 
 /// A local direction of the upper hemisphere (z > 0), distributed like its cosine.
@@ -62,24 +53,6 @@ pub fn cosine_hemisphere_inverse(direction: Vec3) -> [f32; 2] {
     [0.5 * (x + 1.0), 0.5 * (y + 1.0)]
 }
 
-/// The arc tangent of a number between -1 and 1, within 2e-8 but for rounding (Abramowitz and Stegun 1964, 4.4.49).
-#[inline(always)]
-fn atan_of_at_most_one(x: f32) -> f32 {
-    const COEFFICIENTS: [f32; 8] = [
-        0.002_866_225_7,
-        -0.016_165_737,
-        0.042_909_614,
-        -0.075_289_64,
-        0.106_562_64,
-        -0.142_089,
-        0.199_935_51,
-        -0.333_331_45,
-    ];
-    let z = x * x;
-    let sum = COEFFICIENTS.into_iter().fold(0.0, |sum, a| (sum + a) * z);
-    x + x * sum
-}
-
 /// The density of [`cosine_hemisphere`] for a direction with cosine `cosine` (0 below the horizon).
 #[inline(always)]
 pub fn cosine_hemisphere_pdf(cosine: f32) -> SolidAnglePdf {
@@ -103,7 +76,7 @@ pub fn cone_about_z(u: [f32; 2], one_minus_cosine: f32) -> Vec3 {
     let z = 1.0 - height;
     // 1 - z^2 = height (2 - height), without cancellation near the pole.
     let r = (height * (2.0 - height)).max(0.0).sqrt();
-    let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+    let (sin, cos) = sin_cos_of_turn(u[1]);
     Vec3::new(r * cos, r * sin, z)
 }
 
@@ -164,17 +137,6 @@ mod tests {
     fn assert_close(got: &[f64], want: &[f64]) {
         for (g, w) in got.iter().zip(want) {
             assert!((g - w).abs() < 5e-3, "{got:?} instead of {want:?}");
-        }
-    }
-
-    #[test]
-    fn sine_and_cosine_are_those_of_the_system() {
-        for i in -1000..=1000 {
-            let angle = FRAC_PI_4 * (i as f32 / 1000.0);
-            let (sin, cos) = sin_cos_of_eighth(angle);
-            let (want_sin, want_cos) = f64::from(angle).sin_cos();
-            assert!((f64::from(sin) - want_sin).abs() < 1.2e-7, "{angle}");
-            assert!((f64::from(cos) - want_cos).abs() < 1.2e-7, "{angle}");
         }
     }
 

@@ -19,13 +19,13 @@ pub mod xml;
 
 pub use bsdfs::{
     Bsdf, BsdfSample, BsdfValue, CoatedBase, CommonParameters, Conductor, ConductorIndex,
-    ConductorMaterial, Dielectric, DielectricMaterial, Diffuse, DiffuseMaterial, Distribution,
-    Indices, Material, Model, Null, Perturbed, Plastic, PlasticMaterial, Principled,
+    ConductorMaterial, Dielectric, DielectricMaterial, Diffuse, DiffuseMaterial, DirectionNumbers,
+    Distribution, Indices, Material, Model, Null, Perturbed, Plastic, PlasticMaterial, Principled,
     PrincipledMaterial, PrincipledThin, PrincipledThinMaterial, Refraction, RoughConductor,
     RoughConductorMaterial, RoughDielectric, RoughDielectricMaterial, RoughPlastic,
     RoughPlasticMaterial, Roughness, SeenPoint, Side, ThinDielectric,
 };
-pub(crate) use bsdfs::{BsdfSamples, BsdfValues};
+pub(crate) use bsdfs::{BsdfSamples, BsdfValues, SlopeLanes};
 pub use effects::{Effect, Effects};
 pub use emitters::{
     AreaLight, ConstantLight, DirectionalLight, Emitter, EnvironmentMap, LightSample, PointLight,

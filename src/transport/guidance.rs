@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::variant::{Guiding, Scattering};
 use crate::lanes::{CHUNK, VectorLanes};
 use crate::learning::{Bin, Knowledge, MixedDirection, Odds, SquareWarp};
-use crate::sampling::warp;
+use crate::sampling::{Frame, warp};
 use crate::scene::{BsdfSamples, BsdfValues};
 use crate::spectrum::SpectrumArithmetic;
 
@@ -75,7 +75,7 @@ impl<'k> Guidance<'k> {
         directions: &VectorLanes<CHUNK>,
         values: &mut BsdfValues<S>,
     ) {
-        let places = SquarePlaces::of(vertices.iter(), normals, directions);
+        let places = SquarePlaces::of(normals, directions);
         for lane in 0..vertices.len().min(CHUNK) {
             let guided = guided_pdf(self.warps[lane], places.bins[lane], places.cosines[lane]);
             values.pdf[lane] = mixed_pdf(self.share[lane], guided, values.pdf[lane]);
@@ -135,7 +135,9 @@ impl<'k> Guidance<'k> {
                 samples.weight[lane] *= 1.0 / self.density[lane];
             } else if self.is_redirected[lane] {
                 let local = warp::cosine_hemisphere([numbers[0][lane], numbers[1][lane]]);
-                vertex.look(lane, normals.get(lane), local, samples);
+                let normal = normals.get(lane);
+                let direction = Frame::about(normal).to_world(local);
+                vertex.look(lane, direction, normal, samples);
                 let guided = self.density[lane] * local.z * FRAC_1_PI;
                 let pdf = mixed_pdf(share, guided, samples.pdf[lane]);
                 // So far the weight is the value itself.
@@ -147,7 +149,7 @@ impl<'k> Guidance<'k> {
                     samples.weight[lane] *= 1.0 / (1.0 - share);
                     continue;
                 }
-                let (bin, cosine) = place(vertex, normals.get(lane), samples.direction.get(lane));
+                let (bin, cosine) = place(normals.get(lane), samples.direction.get(lane));
                 let guided = guided_pdf(self.warps[lane], bin, cosine);
                 let mixed = mixed_pdf(share, guided, pdf);
                 let is_drawn = pdf > 0.0 && mixed > 0.0;
@@ -176,16 +178,12 @@ impl Default for SquarePlaces {
 }
 
 impl SquarePlaces {
-    /// Those of `directions`, unit and in world space, seen from at most [`CHUNK`] `vertices`.
+    /// Those of `directions`, seen from surfaces with these `normals`; both unit and in world space.
     #[inline(always)]
-    pub fn of<'a, S: SpectrumArithmetic, V: Scattering<S>>(
-        vertices: impl Iterator<Item = &'a V>,
-        normals: &VectorLanes<CHUNK>,
-        directions: &VectorLanes<CHUNK>,
-    ) -> Self {
+    pub fn of(normals: &VectorLanes<CHUNK>, directions: &VectorLanes<CHUNK>) -> Self {
         let mut places = Self::default();
-        for (lane, vertex) in (0..CHUNK).zip(vertices) {
-            let (bin, cosine) = place(vertex, normals.get(lane), directions.get(lane));
+        for lane in 0..CHUNK {
+            let (bin, cosine) = place(normals.get(lane), directions.get(lane));
             places.bins[lane] = bin;
             places.cosines[lane] = cosine;
         }
@@ -199,15 +197,11 @@ impl SquarePlaces {
     }
 }
 
-/// What part of the square gives `direction`, unit and in world space, at a vertex with that shading normal; and the cosine between the two, not positive
-/// below the surface, where the part means nothing.
+/// What part of the square gives `direction` at a surface with the shading normal `normal`, both unit and in world space; and the cosine between the two, not
+/// positive below the surface, where the part means nothing.
 #[inline(always)]
-fn place<S: SpectrumArithmetic, V: Scattering<S>>(
-    vertex: &V,
-    normal: Vec3,
-    direction: Vec3,
-) -> (Bin, f32) {
-    let local = vertex.frame(normal).to_local(direction);
+fn place(normal: Vec3, direction: Vec3) -> (Bin, f32) {
+    let local = Frame::about(normal).to_local(direction);
     (Bin::of(warp::cosine_hemisphere_inverse(local)), local.z)
 }
 

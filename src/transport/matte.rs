@@ -6,7 +6,7 @@ use super::batch::CameraPaths;
 use super::engine::Engine;
 use super::variant::{Arrivals, Guiding, Scattering, Variant};
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
-use crate::sampling::{Frame, Sampler, warp};
+use crate::sampling::{Sampler, warp};
 use crate::scene::{BsdfSamples, BsdfValues, Diffuse, Refraction};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
@@ -93,16 +93,9 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     }
 
     #[inline(always)]
-    fn frame(&self, normal: Vec3) -> Frame {
-        Frame::about(normal)
-    }
-
-    #[inline(always)]
-    fn look(&self, lane: usize, normal: Vec3, local: Vec3, samples: &mut BsdfSamples<S>) {
-        let pdf = warp::cosine_hemisphere_pdf(local.z).0;
-        samples
-            .direction
-            .put(lane, self.frame(normal).to_world(local));
+    fn look(&self, lane: usize, direction: Vec3, normal: Vec3, samples: &mut BsdfSamples<S>) {
+        let pdf = warp::cosine_hemisphere_pdf(direction.dot(normal)).0;
+        samples.direction.put(lane, direction);
         samples.weight[lane] = self.reflectance * pdf;
         samples.pdf[lane] = pdf;
     }
@@ -119,7 +112,7 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
 
     #[inline(always)]
     fn sample<'a>(
-        vertices: impl Iterator<Item = &'a Self>,
+        vertices: impl Iterator<Item = &'a Self> + Clone,
         normals: &VectorLanes<CHUNK>,
         [u, v, _]: &[[f32; CHUNK]; 3],
         samples: &mut BsdfSamples<S>,

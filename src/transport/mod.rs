@@ -21,6 +21,7 @@ mod direct;
 mod emission;
 mod emission_table;
 mod engine;
+mod framed;
 mod general;
 mod guidance;
 mod hidden_emitters;

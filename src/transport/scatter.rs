@@ -83,7 +83,7 @@ pub(super) fn scatter<C: Colour, V: Variant>(
             guidance.redirect(bsdfs.clone(), &normals, &numbers, &mut samples);
         }
         if learns {
-            places = SquarePlaces::of(bsdfs, &normals, &samples.direction);
+            places = SquarePlaces::of(&normals, &samples.direction);
         }
         fetch(vertices.geometric_normals(), children, &run, &mut normals);
         fetch(&vertices.position, children, &run, &mut origins);

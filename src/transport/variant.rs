@@ -10,7 +10,7 @@ use super::batch::{CameraPaths, Segments};
 use super::engine::Engine;
 use super::surface::SurfaceChunk;
 use crate::lanes::{CHUNK, KeptLanes, VectorLanes};
-use crate::sampling::{Frame, Sampler, SequencePoint};
+use crate::sampling::{Sampler, SequencePoint};
 use crate::scene::{
     BsdfSamples, BsdfValues, Material, Refraction, Shape, Side, SurfaceParameters, SurfacePoint,
 };
@@ -66,20 +66,35 @@ pub(super) struct Arrival<'a, C: Colour> {
 }
 
 impl<C: Colour> Arrivals<'_, C> {
-    /// Those that arrive at a surface, with their lanes.
+    /// The one in a lane, if it arrives at a surface.
     #[inline(always)]
-    pub fn at_surfaces(&self) -> impl Iterator<Item = (usize, Arrival<'_, C>)> {
-        (0..self.chunk.len()).filter_map(|lane| {
-            let shape = self.engine.shape(self.segments, self.chunk.start + lane)?;
-            let arrival = Arrival {
-                shape,
-                material: &self.engine.scene.materials[shape.material.index()],
-                side: Side::seen_with(self.cosines[lane])?,
-                all: self,
-                lane,
-            };
-            Some((lane, arrival))
+    pub fn at_surface(&self, lane: usize) -> Option<Arrival<'_, C>> {
+        let shape = self.engine.shape(self.segments, self.chunk.start + lane)?;
+        Some(Arrival {
+            shape,
+            material: &self.engine.scene.materials[shape.material.index()],
+            side: Side::seen_with(self.cosines[lane])?,
+            all: self,
+            lane,
         })
+    }
+
+    /// The diffuse reflectance of the side that the one in a lane sees, if that is all that it does and it is the same at every point; not where it is black.
+    #[inline(always)]
+    pub fn reflectance(&self, lane: usize) -> Option<C::Spectrum> {
+        let number = self.surfaces.entries[lane].reflectance(self.cosines[lane])?;
+        let table = &self.engine.shapes.reflectances;
+        Some(if table.is_prepared::<C>() {
+            table.prepared(&self.paths.reflectances, self.path(lane), number)
+        } else {
+            C::evaluate(table.curve(number), self.wavelengths(lane))
+        })
+    }
+
+    /// What refraction has done to the one in a lane, in a variant that [refracts](Variant::REFRACTS).
+    #[inline(always)]
+    pub fn refraction(&self, lane: usize) -> Refraction {
+        self.segments.refraction[self.chunk.start + lane]
     }
 
     /// The camera path from which the one in a lane descends.
@@ -146,7 +161,7 @@ impl<C: Colour> Arrival<'_, C> {
     /// What refraction has done to it, in a variant that [refracts](Variant::REFRACTS).
     #[inline]
     pub fn refraction(&self) -> Refraction {
-        self.all.segments.refraction[self.index()]
+        self.all.refraction(self.lane)
     }
 }
 
@@ -198,12 +213,9 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
     /// Whether what was learned can draw the directions of children, and whether alone.
     fn guiding(&self) -> Guiding;
 
-    /// The frame in which directions are drawn, where `normal` is the shading normal of the side that was hit.
-    fn frame(&self, normal: Vec3) -> Frame;
-
-    /// Makes sample number `lane` one in the unit direction `local` of the [frame](Self::frame): with the bsdf times cosine as its weight, and
-    /// the density with which the surface itself would have drawn the direction.
-    fn look(&self, lane: usize, normal: Vec3, local: Vec3, samples: &mut BsdfSamples<S>);
+    /// Makes sample number `lane` one in `direction`, where `normal` is the unit shading normal of the side that was hit: with the bsdf times cosine as its
+    /// weight, and the density with which the surface itself would have drawn the direction.
+    fn look(&self, lane: usize, direction: Vec3, normal: Vec3, samples: &mut BsdfSamples<S>);
 
     /// Evaluates at most [`CHUNK`] vertices, each with the shading normal of the side that was hit and an incident direction.
     fn evaluate(
@@ -216,7 +228,7 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
     /// Draws an incident direction for each of at most [`CHUNK`] vertices from uniform numbers in [0, 1); the third only where the
     /// variant [chooses lobes](Variant::CHOOSES_LOBES).
     fn sample<'a>(
-        vertices: impl Iterator<Item = &'a Self>,
+        vertices: impl Iterator<Item = &'a Self> + Clone,
         normals: &VectorLanes<CHUNK>,
         numbers: &[[f32; CHUNK]; 3],
         samples: &mut BsdfSamples<S>,

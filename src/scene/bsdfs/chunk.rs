@@ -46,14 +46,31 @@ impl<S: SpectrumArithmetic> BsdfValues<S> {
         normals: &VectorLanes<CHUNK>,
         directions: &VectorLanes<CHUNK>,
     ) {
+        self.find_cosine_pdfs(normals, directions);
+        for (lane, bsdf) in bsdfs.iter().enumerate().take(CHUNK) {
+            self.put_diffuse(lane, bsdf);
+        }
+    }
+
+    /// Puts the density with which a diffuse surface draws a unit incident direction, and the unit shading normal of its side, both in world space, into
+    /// every lane.
+    #[inline(always)]
+    pub fn find_cosine_pdfs(
+        &mut self,
+        normals: &VectorLanes<CHUNK>,
+        directions: &VectorLanes<CHUNK>,
+    ) {
         for lane in 0..CHUNK {
             let cosine = normals.get(lane).dot(directions.get(lane));
             self.pdf[lane] = warp::cosine_hemisphere_pdf(cosine).0;
         }
-        for ((value, bsdf), pdf) in self.value.iter_mut().zip(bsdfs).zip(self.pdf) {
-            // The density is the cosine over pi, too.
-            *value = bsdf.reflectance * pdf;
-        }
+    }
+
+    /// Puts the value of a diffuse bsdf into a lane where its density is.
+    #[inline(always)]
+    pub fn put_diffuse(&mut self, lane: usize, bsdf: &Diffuse<S>) {
+        // The density is the cosine over pi, too.
+        self.value[lane] = bsdf.reflectance * self.pdf[lane];
     }
 }
 
@@ -78,14 +95,25 @@ impl<S: SpectrumArithmetic> BsdfSamples<S> {
         u: &[f32; CHUNK],
         v: &[f32; CHUNK],
     ) {
+        self.draw_by_cosine(normals, u, v);
+        for (weight, bsdf) in self.weight.iter_mut().zip(bsdfs) {
+            *weight = bsdf.reflectance;
+        }
+    }
+
+    /// Draws the incident direction of a diffuse surface in every lane, and puts its density beside it, from the same.
+    #[inline(always)]
+    pub fn draw_by_cosine(
+        &mut self,
+        normals: &VectorLanes<CHUNK>,
+        u: &[f32; CHUNK],
+        v: &[f32; CHUNK],
+    ) {
         for (lane, (&u, &v)) in u.iter().zip(v).enumerate() {
             let local = warp::cosine_hemisphere([u, v]);
             let frame = Frame::about(normals.get(lane));
             self.direction.put(lane, frame.to_world(local));
             self.pdf[lane] = warp::cosine_hemisphere_pdf(local.z).0;
-        }
-        for (weight, bsdf) in self.weight.iter_mut().zip(bsdfs) {
-            *weight = bsdf.reflectance;
         }
     }
 }

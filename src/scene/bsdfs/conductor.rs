@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use super::conductor_materials::ConductorIndex;
-use super::{BsdfSample, Discrete, fresnel};
+use super::{BsdfSample, DirectionNumbers, Discrete, fresnel};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::textures::{SpectrumTexture, TextureLoader};
@@ -87,7 +87,7 @@ impl<S: SpectrumArithmetic> Conductor<S> {
     }
 
     #[inline]
-    pub(super) fn sample(&self, outgoing: Vec3, _u: [f32; 3]) -> BsdfSample<S> {
+    pub(super) fn sample(&self, outgoing: Vec3, _numbers: &DirectionNumbers) -> BsdfSample<S> {
         let incident = fresnel::reflect_local(outgoing);
         BsdfSample::discrete(incident, self.fresnel(outgoing.z))
     }

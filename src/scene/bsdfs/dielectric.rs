@@ -11,7 +11,7 @@
 use glam::Vec3;
 
 use super::index::Indices;
-use super::{BsdfSample, Discrete, Side, fresnel};
+use super::{BsdfSample, DirectionNumbers, Discrete, Side, fresnel};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::textures::{SpectrumTexture, TextureLoader};
@@ -121,11 +121,11 @@ impl<S: SpectrumArithmetic> Dielectric<S> {
     }
 
     /// The hero wavelength's Fresnel reflectance decides between reflection and refraction.
-    pub(super) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
+    pub(super) fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
         let eta = self.eta.hero();
         let interface = fresnel::dielectric(outgoing.z, eta);
         let reflected = self.fresnel(outgoing.z);
-        if u[2] < interface.reflectance {
+        if numbers.choice < interface.reflectance {
             let weight = self.reflectance * reflected / interface.reflectance;
             return BsdfSample::discrete(fresnel::reflect_local(outgoing), weight);
         }

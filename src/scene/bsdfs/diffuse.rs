@@ -8,7 +8,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::{BsdfSample, BsdfValue};
+use super::{BsdfSample, BsdfValue, DirectionNumbers};
 use crate::sampling::warp;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
@@ -86,8 +86,8 @@ impl<S: SpectrumArithmetic> Diffuse<S> {
     }
 
     #[inline]
-    pub(super) fn sample(&self, _outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
-        let incident = warp::cosine_hemisphere([u[0], u[1]]);
+    pub(super) fn sample(&self, _outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
+        let incident = warp::cosine_hemisphere(numbers.square);
         let pdf = warp::cosine_hemisphere_pdf(incident.z).0;
         // (reflectance / pi) cos / (cos / pi)
         BsdfSample::smooth(incident, self.reflectance, pdf)

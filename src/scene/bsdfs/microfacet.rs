@@ -5,16 +5,17 @@
 //! numerical inversion of Jakob 2014, "An Improved Visible Normal Sampling Routine for the Beckmann Distribution", for GGX by
 //! Heitz 2018, "Sampling the GGX Distribution of Visible Normals". All vectors are unit vectors in the local frame.
 
-use std::f32::consts::{FRAC_2_SQRT_PI, PI};
+use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
+use super::DirectionNumbers;
+use super::beckmann::{self, INVERSE_SQRT_PI};
+use crate::functions::{erf, exp_of_negative, sin_cos_of_turn};
 use crate::sampling::warp;
 
 /// The smallest roughness: with less the density of a highlight leaves `f32`.
 const LEAST_ROUGHNESS: f32 = 1e-4;
-/// 1 / sqrt(pi).
-const INVERSE_SQRT_PI: f32 = 0.5 * FRAC_2_SQRT_PI;
 
 /// The kinds of distributions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +76,7 @@ impl Microfacets {
         let area = PI * self.alpha.x * self.alpha.y;
         let density = match self.distribution {
             Distribution::Beckmann => {
-                (-slope / cos_squared).exp() / (area * cos_squared * cos_squared)
+                exp_of_negative(-slope / cos_squared) / (area * cos_squared * cos_squared)
             }
             Distribution::Ggx => {
                 let sum = slope + cos_squared;
@@ -127,23 +128,48 @@ impl Microfacets {
         self.density(m) * self.exact_masking(outgoing) * toward / outgoing.z
     }
 
+    /// See [`Bsdf::slope_view`](super::Bsdf::slope_view).
+    #[inline]
+    pub fn slope_view(&self, outgoing: Vec3) -> Option<f32> {
+        let searches = self.visible && self.distribution == Distribution::Beckmann;
+        searches.then(|| self.stretched(outgoing).z)
+    }
+
+    /// Draws the normal of a facet seen from `outgoing` (z > 0) by what is not for choosing among the `numbers`.
+    #[inline]
+    pub fn sample_by(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> Vec3 {
+        match numbers.slope {
+            Some(slope) => self.with_slope(self.stretched(outgoing), slope),
+            None => self.sample(outgoing, numbers.square),
+        }
+    }
+
     /// Draws the normal of a facet seen from `outgoing` (z > 0) from the uniform numbers `u` in [0, 1).
     #[inline]
     pub fn sample(&self, outgoing: Vec3, u: [f32; 2]) -> Vec3 {
         if !self.visible {
             return self.sample_all(u);
         }
-        // The surface is stretched to roughness 1, where the slopes seen are found, and back.
-        let stretched = Vec3::new(
-            self.alpha.x * outgoing.x,
-            self.alpha.y * outgoing.y,
-            outgoing.z,
-        )
-        .normalize();
+        let stretched = self.stretched(outgoing);
         let slope = match self.distribution {
-            Distribution::Beckmann => beckmann_slope_seen(stretched.z.min(1.0), u),
-            Distribution::Ggx => ggx_slope_seen(stretched.z.min(1.0), u),
+            Distribution::Beckmann => beckmann::slope_seen(stretched.z, u),
+            Distribution::Ggx => ggx_slope_seen(stretched.z, u),
         };
+        self.with_slope(stretched, slope)
+    }
+
+    /// The direction from which a surface is seen that was stretched to roughness 1, seen before from `outgoing`.
+    #[inline]
+    fn stretched(&self, outgoing: Vec3) -> Vec3 {
+        let Vec3 { x, y, z } = outgoing;
+        let stretched = Vec3::new(self.alpha.x * x, self.alpha.y * y, z).normalize();
+        stretched.with_z(stretched.z.min(1.0))
+    }
+
+    /// The normal of a facet that has this slope along and across the direction from which it is seen, once it has been
+    /// [stretched](Self::stretched).
+    #[inline]
+    fn with_slope(&self, stretched: Vec3, slope: Vec2) -> Vec3 {
         let azimuth = Vec2::new(stretched.x, stretched.y)
             .try_normalize()
             .unwrap_or(Vec2::X);
@@ -153,7 +179,7 @@ impl Microfacets {
 
     /// Draws the normal of a facet, seen or not, with the density D cos.
     fn sample_all(&self, u: [f32; 2]) -> Vec3 {
-        let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+        let (sin, cos) = sin_cos_of_turn(u[1]);
         let azimuth = (self.alpha * Vec2::new(cos, sin)).normalize();
         let alpha_squared = 1.0 / (azimuth / self.alpha).length_squared();
         let tan_squared = match self.distribution {
@@ -181,7 +207,7 @@ impl Microfacets {
         match self.distribution {
             Distribution::Beckmann => {
                 let a = 1.0 / tan_squared.sqrt();
-                2.0 / (1.0 + libm::erff(a) + INVERSE_SQRT_PI * (-a * a).exp() / a)
+                2.0 / (1.0 + erf(a) + INVERSE_SQRT_PI * exp_of_negative(-a * a) / a)
             }
             Distribution::Ggx => 2.0 / (1.0 + (1.0 + tan_squared).sqrt()),
         }
@@ -200,69 +226,9 @@ fn ggx_slope_seen(cos: f32, u: [f32; 2]) -> Vec2 {
     Vec2::new(cos * p.y - sin * z, p.x) / (sin * p.y + cos * z)
 }
 
-/// A slope of a Beckmann surface of roughness 1 seen from the cosine `cos`, along the view's azimuth and across.
-fn beckmann_slope_seen(cos: f32, u: [f32; 2]) -> Vec2 {
-    const MARGIN: f32 = 1e-6;
-    let [u, v] = u.map(|u| u.clamp(MARGIN, 1.0 - MARGIN));
-    let tan = (1.0 - cos * cos).max(0.0).sqrt() / cos;
-    let cot = 1.0 / tan;
-    // The search is for erf of the slope. It starts at the solution for a grazing view, the least linear case.
-    let greatest = libm::erff(cot);
-    let mut x = greatest - (greatest + 1.0) * libm::erff((-u.ln()).sqrt());
-    let wanted = u * (1.0 + greatest + INVERSE_SQRT_PI * tan * (-cot * cot).exp());
-    for _ in 0..3 {
-        let slope = inverse_erf(x);
-        let value = 1.0 + x + INVERSE_SQRT_PI * tan * (-slope * slope).exp() - wanted;
-        x -= value / (1.0 - slope * tan);
-    }
-    Vec2::new(inverse_erf(x), inverse_erf(2.0 * v - 1.0))
-}
-
-/// The inverse error function (Giles 2012, "Approximating the erfinv function").
-fn inverse_erf(x: f32) -> f32 {
-    const CENTRE: [f32; 9] = [
-        2.810_226_4e-8,
-        3.432_739_4e-7,
-        -3.523_387_7e-6,
-        -4.391_506_5e-6,
-        2.185_808_7e-4,
-        -1.253_725e-3,
-        -4.177_681_6e-3,
-        2.466_407_3e-1,
-        1.501_409_4,
-    ];
-    const TAIL: [f32; 9] = [
-        -2.002_142_6e-4,
-        1.009_505_6e-4,
-        1.349_343_2e-3,
-        -3.673_428_4e-3,
-        5.739_507_7e-3,
-        -7.622_461_3e-3,
-        9.438_870_5e-3,
-        1.001_674,
-        2.832_976_8,
-    ];
-    let x = x.clamp(-1.0 + f32::EPSILON, 1.0 - f32::EPSILON);
-    let w = -((1.0 - x) * (1.0 + x)).ln();
-    let (coefficients, w) = if w < 5.0 {
-        (CENTRE, w - 2.5)
-    } else {
-        (TAIL, w.sqrt() - 3.0)
-    };
-    x * coefficients.into_iter().fold(0.0, |sum, c| sum * w + c)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_inverse_error_function_inverts() {
-        for i in -999..=999 {
-            let x = i as f32 / 1000.0;
-            assert!((libm::erff(inverse_erf(x)) - x).abs() < 1e-6, "{x}");
-        }
-    }
 
     /// The projected area of the facets is that of the surface: the integral of D cos over normals is 1, and that of the
     /// visible normals' density too.

@@ -10,6 +10,7 @@
 //! its z is negative behind the surface, in transmission. Values are those of radiance: they include the scaling by the squared
 //! relative index with which radiance is compressed where it is refracted.
 
+mod beckmann;
 mod blend;
 mod bump_map;
 mod chunk;
@@ -43,6 +44,7 @@ mod surface;
 mod thin_dielectric;
 mod twosided;
 
+pub(crate) use beckmann::SlopeLanes;
 pub(crate) use chunk::{BsdfSamples, BsdfValues};
 pub use conductor::{Conductor, ConductorMaterial};
 pub use conductor_materials::ConductorIndex;
@@ -67,7 +69,7 @@ pub use roughness::Roughness;
 pub use side::Side;
 pub use thin_dielectric::ThinDielectric;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SpectrumArithmetic;
@@ -106,6 +108,35 @@ pub enum Model<S> {
     PrincipledThin(PrincipledThin<S>),
     /// Nothing: light passes.
     Null(Null),
+}
+
+/// Random numbers for one direction.
+#[derive(Clone, Copy, Debug)]
+pub struct DirectionNumbers {
+    /// Uniform in [0, 1)^2.
+    pub square: [f32; 2],
+    /// Chooses among lobes: uniform in [0, 1).
+    pub choice: f32,
+    /// The slope that `square` gives where the bsdf has a [`slope_view`](Bsdf::slope_view), if it has been found already.
+    slope: Option<Vec2>,
+}
+
+impl DirectionNumbers {
+    /// Numbers that are uniform in [0, 1).
+    #[inline]
+    pub fn new([u, v, choice]: [f32; 3]) -> Self {
+        Self {
+            square: [u, v],
+            choice,
+            slope: None,
+        }
+    }
+
+    /// The same, whose `slope` has been found.
+    #[inline]
+    pub(crate) fn with_slope(self, slope: Option<Vec2>) -> Self {
+        Self { slope, ..self }
+    }
 }
 
 /// What the smooth lobes of a bsdf say of a pair of directions; discrete lobes have no values.
@@ -257,10 +288,17 @@ impl<S: SpectrumArithmetic> Bsdf<S> {
         dispatch_frame!(self, model => model.evaluate(outgoing, incident))
     }
 
-    /// Draws an incident direction from the uniform numbers `u` in [0, 1); the third chooses among lobes.
+    /// The cosine under which the slope of a facet is looked for when a direction is drawn, if it takes a search: that of many can be done
+    /// [at once](SlopeLanes).
     #[inline]
-    pub fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
-        dispatch_frame!(self, model => model.sample(outgoing, u))
+    pub(crate) fn slope_view(&self, outgoing: Vec3) -> Option<f32> {
+        dispatch_frame!(self, model => model.slope_view(outgoing))
+    }
+
+    /// Draws an incident direction.
+    #[inline]
+    pub fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
+        dispatch_frame!(self, model => model.sample(outgoing, numbers))
     }
 }
 
@@ -286,8 +324,18 @@ impl<S: SpectrumArithmetic> Model<S> {
     }
 
     #[inline]
-    fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
-        dispatch!(self, model => model.sample(outgoing, u))
+    fn slope_view(&self, outgoing: Vec3) -> Option<f32> {
+        match self {
+            Self::RoughConductor(model) => model.slope_view(outgoing),
+            Self::RoughDielectric(model) => model.slope_view(outgoing),
+            Self::RoughPlastic(model) => model.slope_view(outgoing),
+            _ => None,
+        }
+    }
+
+    #[inline]
+    fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
+        dispatch!(self, model => model.sample(outgoing, numbers))
     }
 }
 

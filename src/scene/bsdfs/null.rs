@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{BsdfSample, Discrete};
+use super::{BsdfSample, DirectionNumbers, Discrete};
 use crate::spectrum::SpectrumArithmetic;
 
 /// A surface that light passes.
@@ -21,7 +21,7 @@ impl Null {
     pub(super) fn sample<S: SpectrumArithmetic>(
         &self,
         outgoing: Vec3,
-        _u: [f32; 3],
+        _numbers: &DirectionNumbers,
     ) -> BsdfSample<S> {
         BsdfSample::discrete(-outgoing, S::ONE)
     }

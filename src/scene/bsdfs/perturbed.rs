@@ -13,7 +13,7 @@ use glam::Vec3;
 use super::material::SeenPoint;
 use super::stated::Stated;
 use super::surface::Surface;
-use super::{BsdfSample, BsdfValue, Model};
+use super::{BsdfSample, BsdfValue, DirectionNumbers, Model};
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;
 use crate::scene::textures::TextureLoader;
@@ -162,8 +162,13 @@ impl<S: SpectrumArithmetic> Perturbed<S> {
         }
     }
 
-    pub(super) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
-        let sample = self.model.sample(self.frame.to_local(outgoing), u);
+    #[inline]
+    pub(super) fn slope_view(&self, outgoing: Vec3) -> Option<f32> {
+        self.model.slope_view(self.frame.to_local(outgoing))
+    }
+
+    pub(super) fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
+        let sample = self.model.sample(self.frame.to_local(outgoing), numbers);
         let incident = self.frame.to_world(sample.incident);
         if !self.is_consistent(incident, sample.incident.z) {
             return BsdfSample::failed();

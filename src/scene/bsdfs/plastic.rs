@@ -13,7 +13,7 @@ use glam::Vec3;
 
 use super::index::Indices;
 use super::surface::Surface;
-use super::{BsdfSample, BsdfValue, DiffuseMaterial, fresnel, mixed_shininess};
+use super::{BsdfSample, BsdfValue, DiffuseMaterial, DirectionNumbers, fresnel, mixed_shininess};
 use crate::sampling::warp;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
@@ -205,14 +205,14 @@ impl<S: SpectrumArithmetic> Plastic<S> {
         )
     }
 
-    pub(super) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
+    pub(super) fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
         let reflected = self.reflected(outgoing.z);
         let probability = self.specular_probability(reflected);
-        if u[2] < probability {
+        if numbers.choice < probability {
             let incident = fresnel::reflect_local(outgoing);
             return BsdfSample::discrete(incident, self.specular * (reflected / probability));
         }
-        let incident = warp::cosine_hemisphere([u[0], u[1]]);
+        let incident = warp::cosine_hemisphere(numbers.square);
         BsdfSample::of_value(incident, self.evaluate(outgoing, incident))
     }
 }

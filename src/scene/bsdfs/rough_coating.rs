@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use glam::{Vec2, Vec3};
+use multiversion::multiversion;
 
-use super::fresnel;
+use super::beckmann::SlopeLanes;
 use super::microfacet::{Distribution, Microfacets};
+use super::{DirectionNumbers, fresnel};
+use crate::lanes::CHUNK;
 
 /// Entries of the table.
 const ENTRIES: usize = 64;
@@ -67,6 +70,10 @@ fn nodes(eta: f32) -> usize {
 }
 
 /// The share of the light from the cosine `cos` that is reflected, or else refracted, by quadrature over the facets seen.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
 fn scattered(
     facets: &Microfacets,
     eta: f32,
@@ -75,10 +82,22 @@ fn scattered(
     reflected: bool,
 ) -> f32 {
     let outgoing = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    let view = facets.slope_view(outgoing);
     let mut sum = 0.0;
-    for across in quadrature {
-        for along in quadrature {
-            let m = facets.sample(outgoing, [along.at, across.at]);
+    for (across, along) in quadrature
+        .iter()
+        .flat_map(|across| quadrature.chunks(CHUNK).map(move |along| (across, along)))
+    {
+        let mut slopes = SlopeLanes::new();
+        if let Some(view) = view {
+            for (lane, along) in along.iter().enumerate() {
+                slopes.ask(lane, view, [along.at, across.at]);
+            }
+            slopes.find();
+        }
+        for (lane, along) in along.iter().enumerate() {
+            let numbers = DirectionNumbers::new([along.at, across.at, 0.0]);
+            let m = facets.sample_by(outgoing, &numbers.with_slope(slopes.get(lane)));
             let toward = outgoing.dot(m);
             let interface = fresnel::dielectric(toward.clamp(0.0, 1.0), eta);
             let (incident, share) = if reflected {

@@ -13,7 +13,7 @@ use super::conductor_materials::ConductorIndex;
 use super::microfacet::Microfacets;
 use super::roughness::Roughness;
 use super::surface::Surface;
-use super::{BsdfSample, BsdfValue, fresnel};
+use super::{BsdfSample, BsdfValue, DirectionNumbers, fresnel};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::textures::TextureLoader;
@@ -84,6 +84,12 @@ impl<S: SpectrumArithmetic> RoughConductor<S> {
         true
     }
 
+    /// See [`Bsdf::slope_view`](super::Bsdf::slope_view).
+    #[inline]
+    pub(super) fn slope_view(&self, outgoing: Vec3) -> Option<f32> {
+        self.facets.slope_view(outgoing)
+    }
+
     pub(super) fn evaluate(&self, outgoing: Vec3, incident: Vec3) -> BsdfValue<S> {
         if outgoing.z <= 0.0 || incident.z <= 0.0 {
             return BsdfValue::nothing();
@@ -97,8 +103,8 @@ impl<S: SpectrumArithmetic> RoughConductor<S> {
         BsdfValue::of(self.metal.fresnel(cos) * value, pdf)
     }
 
-    pub(super) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
-        let m = self.facets.sample(outgoing, [u[0], u[1]]);
+    pub(super) fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
+        let m = self.facets.sample_by(outgoing, numbers);
         let incident = fresnel::reflect(outgoing, m);
         BsdfSample::of_value(incident, self.evaluate(outgoing, incident))
     }

@@ -15,7 +15,7 @@ use super::dielectric::{Dielectric, DielectricMaterial};
 use super::microfacet::Microfacets;
 use super::roughness::Roughness;
 use super::surface::Surface;
-use super::{BsdfSample, BsdfValue, Side, fresnel};
+use super::{BsdfSample, BsdfValue, DirectionNumbers, Side, fresnel};
 use crate::sampling::SolidAnglePdf;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
@@ -107,6 +107,12 @@ impl<S: SpectrumArithmetic> RoughDielectric<S> {
         }
     }
 
+    /// See [`Bsdf::slope_view`](super::Bsdf::slope_view).
+    #[inline]
+    pub(super) fn slope_view(&self, outgoing: Vec3) -> Option<f32> {
+        self.facets.slope_view(outgoing)
+    }
+
     pub(super) fn evaluate(&self, outgoing: Vec3, incident: Vec3) -> BsdfValue<S> {
         if outgoing.z <= 0.0 || incident.z == 0.0 {
             BsdfValue::nothing()
@@ -157,15 +163,15 @@ impl<S: SpectrumArithmetic> RoughDielectric<S> {
         }
     }
 
-    pub(super) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
+    pub(super) fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
         let eta = self.interface.eta.hero();
-        let m = self.sampled_facets(outgoing).sample(outgoing, [u[0], u[1]]);
+        let m = self.sampled_facets(outgoing).sample_by(outgoing, numbers);
         let cos = outgoing.dot(m);
         if cos <= 0.0 {
             return BsdfSample::failed();
         }
         let interface = fresnel::dielectric(cos.min(1.0), eta);
-        let is_reflected = u[2] < interface.reflectance;
+        let is_reflected = numbers.choice < interface.reflectance;
         let incident = if is_reflected {
             fresnel::reflect(outgoing, m)
         } else {

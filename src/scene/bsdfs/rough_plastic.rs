@@ -17,7 +17,7 @@ use super::microfacet::{Distribution, Microfacets};
 use super::plastic::{CoatedBase, PlasticMaterial, specular_probability};
 use super::rough_coating::RoughCoating;
 use super::surface::Surface;
-use super::{BsdfSample, BsdfValue, fresnel, mixed_shininess, roughness};
+use super::{BsdfSample, BsdfValue, DirectionNumbers, fresnel, mixed_shininess, roughness};
 use crate::sampling::warp;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
@@ -133,6 +133,12 @@ impl<S: SpectrumArithmetic> RoughPlastic<S> {
         true
     }
 
+    /// See [`Bsdf::slope_view`](super::Bsdf::slope_view).
+    #[inline]
+    pub(super) fn slope_view(&self, outgoing: Vec3) -> Option<f32> {
+        self.facets.slope_view(outgoing)
+    }
+
     pub(super) fn evaluate(&self, outgoing: Vec3, incident: Vec3) -> BsdfValue<S> {
         if outgoing.z <= 0.0 || incident.z <= 0.0 {
             return BsdfValue::nothing();
@@ -150,13 +156,12 @@ impl<S: SpectrumArithmetic> RoughPlastic<S> {
         BsdfValue::of(self.specular * specular + self.base * diffuse, pdf)
     }
 
-    pub(super) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
+    pub(super) fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
         let transmitted = self.coating.transmittance(outgoing.z);
-        let place = [u[0], u[1]];
-        let incident = if u[2] < self.specular_probability(transmitted) {
-            fresnel::reflect(outgoing, self.facets.sample(outgoing, place))
+        let incident = if numbers.choice < self.specular_probability(transmitted) {
+            fresnel::reflect(outgoing, self.facets.sample_by(outgoing, numbers))
         } else {
-            warp::cosine_hemisphere(place)
+            warp::cosine_hemisphere(numbers.square)
         };
         BsdfSample::of_value(incident, self.evaluate(outgoing, incident))
     }

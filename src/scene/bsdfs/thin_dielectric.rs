@@ -11,7 +11,7 @@
 use glam::Vec3;
 
 use super::dielectric::Dielectric;
-use super::{BsdfSample, Discrete, fresnel};
+use super::{BsdfSample, DirectionNumbers, Discrete, fresnel};
 use crate::spectrum::SpectrumArithmetic;
 
 /// A thin pane at the wavelengths of one path.
@@ -36,10 +36,10 @@ impl<S: SpectrumArithmetic> ThinDielectric<S> {
         self.face.reflectance * reflected + self.face.transmittance * (S::ONE - reflected)
     }
 
-    pub(super) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
+    pub(super) fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
         let reflected = self.reflected(outgoing.z);
         let probability = reflected.hero();
-        if u[2] < probability {
+        if numbers.choice < probability {
             let weight = self.face.reflectance * reflected / probability;
             BsdfSample::discrete(fresnel::reflect_local(outgoing), weight)
         } else {

@@ -15,6 +15,7 @@ use glam::{DVec3, Vec2, Vec3};
 use super::Placement;
 use super::sphere::load_radius;
 use super::{HitCoordinates, ShapeSample, SurfaceParameters, SurfacePoint};
+use crate::functions::sin_cos_of_turn;
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;
 use crate::scene::xml::Object;
@@ -140,7 +141,7 @@ impl Cylinder {
     }
 
     pub(super) fn sample(&self, reference: Vec3, u: [f32; 2]) -> ShapeSample {
-        let (sin, cos) = (2.0 * PI * u[0]).sin_cos();
+        let (sin, cos) = sin_cos_of_turn(u[0]);
         let radial = Frame::about(self.axis.normalize()).to_world(Vec3::new(cos, sin, 0.0));
         ShapeSample::by_area(reference, self.point(u[1], radial), self.area())
     }

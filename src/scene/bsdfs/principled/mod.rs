@@ -18,6 +18,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::{Vec2, Vec3};
 
 use super::microfacet::{Distribution, Microfacets};
+use crate::functions::sin_cos_of_turn;
 use crate::scene::error::SceneError;
 use crate::scene::textures::{FloatTexture, TextureLoader};
 use crate::scene::xml::Object;
@@ -159,7 +160,7 @@ impl CoatFacets {
     }
 
     fn sample(&self, u: [f32; 2]) -> Vec3 {
-        let (sin_azimuth, cos_azimuth) = (2.0 * PI * u[0]).sin_cos();
+        let (sin_azimuth, cos_azimuth) = sin_cos_of_turn(u[0]);
         let cos_squared = (1.0 - self.alpha_squared.powf(1.0 - u[1])) / (1.0 - self.alpha_squared);
         let sin = (1.0 - cos_squared).max(0.0).sqrt();
         Vec3::new(

@@ -8,7 +8,9 @@ use super::{
 };
 use crate::sampling::warp;
 use crate::scene::bsdfs::microfacet::Microfacets;
-use crate::scene::bsdfs::{BsdfSample, BsdfValue, Side, fresnel, mixed_shininess};
+use crate::scene::bsdfs::{
+    BsdfSample, BsdfValue, DirectionNumbers, Side, fresnel, mixed_shininess,
+};
 use crate::spectrum::SpectrumArithmetic;
 
 /// How often the lobes of a principled surface are sampled.
@@ -206,18 +208,22 @@ impl<S: SpectrumArithmetic> Principled<S> {
         )
     }
 
-    pub(in crate::scene::bsdfs) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
-        let place = [u[0], u[1]];
+    pub(in crate::scene::bsdfs) fn sample(
+        &self,
+        outgoing: Vec3,
+        numbers: &DirectionNumbers,
+    ) -> BsdfSample<S> {
+        let place = numbers.square;
         let m = self.facets.sample(outgoing, place);
         let cos = outgoing.dot(m).clamp(0.0, 1.0);
         let interface = fresnel::dielectric(cos, self.eta);
         let probabilities = self.probabilities(interface.reflectance);
         let mut limit = probabilities.diffuse;
-        let is_diffuse = u[2] < limit;
+        let is_diffuse = numbers.choice < limit;
         limit += probabilities.clearcoat;
-        let is_coat = u[2] < limit;
+        let is_coat = numbers.choice < limit;
         limit += probabilities.refraction;
-        let is_refracted = !is_coat && u[2] < limit;
+        let is_refracted = !is_coat && numbers.choice < limit;
         let incident = if is_diffuse {
             warp::cosine_hemisphere(place)
         } else if is_coat {

@@ -26,7 +26,7 @@ use super::{
 };
 use crate::sampling::warp;
 use crate::scene::bsdfs::microfacet::Microfacets;
-use crate::scene::bsdfs::{BsdfSample, BsdfValue, fresnel, mixed_shininess};
+use crate::scene::bsdfs::{BsdfSample, BsdfValue, DirectionNumbers, fresnel, mixed_shininess};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::textures::{FloatTexture, TextureLoader};
@@ -232,23 +232,27 @@ impl<S: SpectrumArithmetic> PrincipledThin<S> {
         value
     }
 
-    pub(in crate::scene::bsdfs) fn sample(&self, outgoing: Vec3, u: [f32; 3]) -> BsdfSample<S> {
-        let place = [u[0], u[1]];
+    pub(in crate::scene::bsdfs) fn sample(
+        &self,
+        outgoing: Vec3,
+        numbers: &DirectionNumbers,
+    ) -> BsdfSample<S> {
+        let place = numbers.square;
         let [reflection, transmission, diffuse, _] = self.probabilities();
         let turn_over = |v: Vec3| v.with_z(-v.z);
-        let (incident, is_behind) = if u[2] < reflection {
+        let (incident, is_behind) = if numbers.choice < reflection {
             (
                 fresnel::reflect(outgoing, self.facets.sample(outgoing, place)),
                 false,
             )
-        } else if u[2] < reflection + transmission {
+        } else if numbers.choice < reflection + transmission {
             let m = self.spread_facets.sample(outgoing, place);
             let incident = turn_over(fresnel::reflect(outgoing, m));
             if incident.dot(m) >= 0.0 {
                 return BsdfSample::failed();
             }
             (incident, true)
-        } else if u[2] < reflection + transmission + diffuse {
+        } else if numbers.choice < reflection + transmission + diffuse {
             (warp::cosine_hemisphere(place), false)
         } else {
             (turn_over(warp::cosine_hemisphere(place)), true)

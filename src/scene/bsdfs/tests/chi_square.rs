@@ -6,7 +6,7 @@ use glam::Vec3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::{direction, materials, numbers, seen_in_rgb};
-use crate::scene::bsdfs::{Bsdf, Side};
+use crate::scene::bsdfs::{Bsdf, DirectionNumbers, Side};
 use crate::spectrum::Spectrum;
 
 const ROWS: usize = 24;
@@ -43,7 +43,7 @@ pub(super) fn p_value(bsdf: &Bsdf<Spectrum<3>>, outgoing: Vec3) -> f64 {
     let mut counts = vec![0u32; ROWS * COLUMNS + 1];
     let mut numbers = numbers();
     for _ in 0..DRAWS {
-        let sample = bsdf.sample(outgoing, numbers());
+        let sample = bsdf.sample(outgoing, &DirectionNumbers::new(numbers()));
         let smooth = sample.pdf.0 > 0.0 && sample.pdf.0.is_finite();
         let bin = if smooth {
             bin_of(sample.incident)

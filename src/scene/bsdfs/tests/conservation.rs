@@ -6,7 +6,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 use super::{direction, material, materials, numbers, seen_in_rgb};
-use crate::scene::bsdfs::{Bsdf, Material, Side};
+use crate::scene::bsdfs::{Bsdf, DirectionNumbers, Material, Side};
 use crate::spectrum::{Spectrum, SpectrumArithmetic};
 
 /// What a white furnace shows: the mean of the weights, without the scaling of refracted radiance.
@@ -14,7 +14,7 @@ fn furnace(bsdf: &Bsdf<Spectrum<3>>, outgoing: Vec3, draws: usize) -> Spectrum<3
     let mut numbers = numbers();
     let mut sum = Spectrum::ZERO;
     for _ in 0..draws {
-        let sample = bsdf.sample(outgoing, numbers());
+        let sample = bsdf.sample(outgoing, &DirectionNumbers::new(numbers()));
         assert!(sample.weight.is_finite() && sample.weight.components().iter().all(|&w| w >= 0.0));
         sum += sample.weight * (sample.eta * sample.eta);
     }
@@ -138,7 +138,7 @@ fn any_direction() -> impl Strategy<Value = Vec3> {
 /// The index behind the surface over the one before it, as a refracted sample tells it.
 fn eta(bsdf: &Bsdf<Spectrum<3>>, outgoing: Vec3) -> f32 {
     let mut numbers = numbers();
-    let mut etas = (0..1000).map(|_| bsdf.sample(outgoing, numbers()).eta);
+    let mut etas = (0..1000).map(|_| bsdf.sample(outgoing, &DirectionNumbers::new(numbers())).eta);
     etas.find(|&eta| eta != 1.0).unwrap_or(1.0)
 }
 
@@ -187,7 +187,7 @@ proptest! {
         for (case, material) in materials() {
             let side = if back { Side::Back } else { Side::Front };
             let Some(bsdf) = seen_in_rgb(material, side, outgoing) else { continue };
-            let sample = bsdf.sample(outgoing, u);
+            let sample = bsdf.sample(outgoing, &DirectionNumbers::new(u));
             prop_assert!(sample.weight.is_finite(), "{}", case.name);
             if sample.weight.is_black() {
                 continue;
