@@ -116,6 +116,16 @@ fn the_image_is_ours_whatever_the_variant() {
 }
 
 #[test]
+fn files_beside_the_scene_are_found() {
+    if !is_there("a peer whose scene names other files") {
+        return;
+    }
+    let textures = files::of_project("scenes/gallery/textures.xml");
+    let peer = MitsubaPeer::start(spec("scalar_rgb", &textures));
+    peer.expect("the scene can be loaded");
+}
+
+#[test]
 fn budgets_are_met_and_one_thread_is_one() {
     if !is_there("budgets of a peer") {
         return;

@@ -66,6 +66,8 @@ def load(path, definitions, width, height, max_depth):
     config = mi.parser.ParserConfig(mi.variant())
     # Cohort has read the same file and judged them.
     config.unused_parameters = mi.LogLevel.Debug
+    # Files that the scene names lie beside it.
+    mi.file_resolver().prepend(os.path.dirname(os.path.abspath(path)))
     try:
         state = mi.parser.parse_file(config, path, **definitions)
         mi.parser.transform_all(config, state)
