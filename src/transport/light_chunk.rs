@@ -152,24 +152,39 @@ impl<C: Colour> LightChunk<C> {
         // With one emitter, what it is need not be asked for every vertex.
         let only = engine.light_choice.only();
         let has_only_lamp = only.is_some_and(|only| engine.lamp(only).is_some());
-        for (lane, i) in chunk.enumerate() {
-            let path = vertices.path[i] as usize;
+        let path = |lane: usize| vertices.path[chunk.start + lane] as usize;
+        let (mut lamps, mut others) = (KeptLanes::none(), KeptLanes::none());
+        for (lane, i) in chunk.clone().enumerate() {
             if !vertices.bsdf[i].has_smooth_lobe() {
                 self.put(lane, positions.get(lane), None);
-                continue;
-            }
-            let chosen = self.emitter[lane] as usize;
-            if has_only_lamp || engine.lamp(chosen).is_some() {
-                let radiance = engine.emission.radiance(paths, path, chosen);
-                self.weight[lane] = radiance * self.lamps.weight[lane];
+            } else if has_only_lamp {
+                self.shine(engine, paths, path(lane), lane);
             } else {
-                let (position, u) = (positions.get(lane), [u[lane], v[lane]]);
-                let (shapes, emitters) = (&engine.scene.shapes, &engine.scene.emitters);
-                let wavelengths = &paths.wavelengths[path];
-                let sample = emitters[chosen].sample::<C>(shapes, position, wavelengths, u);
-                self.put(lane, position, sample.as_ref());
+                // Nobody can foresee who has chosen a lamp: each kind has a loop of its own.
+                let is_lamp = engine.lamp(self.emitter[lane] as usize).is_some();
+                lamps.add_if(lane, is_lamp);
+                others.add_if(lane, !is_lamp);
             }
         }
+        for lane in lamps.iter() {
+            self.shine(engine, paths, path(lane), lane);
+        }
+        let (shapes, emitters) = (&engine.scene.shapes, &engine.scene.emitters);
+        for lane in others.iter() {
+            let emitter = &emitters[self.emitter[lane] as usize];
+            let (position, u) = (positions.get(lane), [u[lane], v[lane]]);
+            let wavelengths = &paths.wavelengths[path(lane)];
+            let sample = emitter.sample::<C>(shapes, position, wavelengths, u);
+            self.put(lane, position, sample.as_ref());
+        }
+    }
+
+    /// Puts the light of the rectangle in a lane, as a path sees it, beside what was drawn of it.
+    #[inline(always)]
+    fn shine(&mut self, engine: &Engine, paths: &CameraPaths<C>, path: usize, lane: usize) {
+        let emitter = self.emitter[lane] as usize;
+        let radiance = engine.emission.radiance(paths, path, emitter);
+        self.weight[lane] = radiance * self.lamps.weight[lane];
     }
 
     /// Puts the rectangles that were chosen into their lanes.
