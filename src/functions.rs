@@ -85,7 +85,7 @@ pub fn ln(x: f32) -> f32 {
         -1.666_805_8e-1,
         2.000_071_5e-1,
         -2.499_999_4e-1,
-        3.333_333_1e-1,
+        3.333_333e-1,
     ];
     // Powers of two are taken off so that what is left lies between the roots of 1/2 and of 2.
     let bits = x.to_bits();
@@ -151,7 +151,7 @@ pub fn inverse_erf(x: f32) -> f32 {
         1.001_674,
         2.832_976_8,
     ];
-    let x = x.max(-1.0 + f32::EPSILON).min(1.0 - f32::EPSILON);
+    let x = x.clamp(-1.0 + f32::EPSILON, 1.0 - f32::EPSILON);
     let w = -ln((1.0 - x) * (1.0 + x));
     let polynomial = |coefficients: [f32; 9], w: f32| {
         let sum = coefficients.into_iter().fold(0.0, |sum, c| sum * w + c);

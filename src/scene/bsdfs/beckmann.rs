@@ -16,7 +16,7 @@ pub(super) const INVERSE_SQRT_PI: f32 = 0.5 * FRAC_2_SQRT_PI;
 #[inline(always)]
 pub(super) fn slope_seen(cos: f32, [u, v]: [f32; 2]) -> Vec2 {
     const MARGIN: f32 = 1e-6;
-    let inside = |u: f32| u.max(MARGIN).min(1.0 - MARGIN);
+    let inside = |u: f32| u.clamp(MARGIN, 1.0 - MARGIN);
     let (u, v) = (inside(u), inside(v));
     let tan = (1.0 - cos * cos).max(0.0).sqrt() / cos;
     let cot = 1.0 / tan;

@@ -118,14 +118,20 @@ impl Microfacets {
     /// The density with which [`Self::sample`] draws `m`, per solid angle of facet normals.
     #[inline]
     pub fn pdf(&self, outgoing: Vec3, m: Vec3) -> f32 {
+        self.pdf_of(self.density(m), outgoing, m)
+    }
+
+    /// The same where the [`density`](Self::density) of facets with that normal is known.
+    #[inline]
+    pub fn pdf_of(&self, density: f32, outgoing: Vec3, m: Vec3) -> f32 {
         if !self.visible {
-            return self.density(m) * m.z.max(0.0);
+            return density * m.z.max(0.0);
         }
         let toward = outgoing.dot(m);
         if toward <= 0.0 {
             return 0.0;
         }
-        self.density(m) * self.exact_masking(outgoing) * toward / outgoing.z
+        density * self.exact_masking(outgoing) * toward / outgoing.z
     }
 
     /// See [`Bsdf::slope_view`](super::Bsdf::slope_view).

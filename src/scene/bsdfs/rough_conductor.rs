@@ -96,10 +96,11 @@ impl<S: SpectrumArithmetic> RoughConductor<S> {
         }
         let m = (outgoing + incident).normalize();
         let shadowing = self.facets.shadowing(outgoing, incident, m);
-        let value = self.facets.density(m) * shadowing / (4.0 * outgoing.z);
+        let density = self.facets.density(m);
+        let value = density * shadowing / (4.0 * outgoing.z);
         let cos = outgoing.dot(m).clamp(0.0, 1.0);
         // The density of a normal's mirror direction (Walter et al. 2007, equation 14).
-        let pdf = self.facets.pdf(outgoing, m) / (4.0 * incident.dot(m));
+        let pdf = self.facets.pdf_of(density, outgoing, m) / (4.0 * incident.dot(m));
         BsdfValue::of(self.metal.fresnel(cos) * value, pdf)
     }
 

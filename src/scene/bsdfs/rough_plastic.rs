@@ -147,11 +147,12 @@ impl<S: SpectrumArithmetic> RoughPlastic<S> {
         let cos = outgoing.dot(m).clamp(0.0, 1.0);
         let reflected = fresnel::dielectric(cos, self.eta).reflectance;
         let shadowing = self.facets.shadowing(outgoing, incident, m);
-        let specular = reflected * self.facets.density(m) * shadowing / (4.0 * outgoing.z);
+        let density = self.facets.density(m);
+        let specular = reflected * density * shadowing / (4.0 * outgoing.z);
         let transmitted = self.coating.transmittance(outgoing.z);
         let diffuse = transmitted * self.coating.transmittance(incident.z) * incident.z * FRAC_1_PI;
         let probability = self.specular_probability(transmitted);
-        let pdf = probability * self.facets.pdf(outgoing, m) / (4.0 * cos)
+        let pdf = probability * self.facets.pdf_of(density, outgoing, m) / (4.0 * cos)
             + (1.0 - probability) * warp::cosine_hemisphere_pdf(incident.z).0;
         BsdfValue::of(self.specular * specular + self.base * diffuse, pdf)
     }

@@ -27,6 +27,10 @@ struct Node {
 
 /// The lights of a node's children.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is at most one node with one child"
+)]
 enum NodeLights {
     /// There is one child, and nothing to choose: a lamp beside a sky is as usual as anything.
     One(LightLanes<1>),
