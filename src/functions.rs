@@ -83,7 +83,7 @@ pub fn ln(x: f32) -> f32 {
         -1.242_014_1e-1,
         1.424_932_3e-1,
         -1.666_805_8e-1,
-        2.000_071_5e-1,
+        2.000_071_4e-1,
         -2.499_999_4e-1,
         3.333_333e-1,
     ];
@@ -202,6 +202,16 @@ mod tests {
             assert!(units < 2.0, "{range:?}: {units}");
         }
         assert_eq!(ln(1.0), 0.0);
+    }
+
+    #[test]
+    fn the_logarithm_is_close_where_it_is_small() {
+        for i in 0..20_000 {
+            let x = 1e-3 * 1.001_f32.powi(i % 14_000) * (1.0 + 1e-5 * (i % 77) as f32);
+            let expected = f64::from(x).ln();
+            let error = (f64::from(ln(x)) - expected).abs();
+            assert!(error < 1e-7 * expected.abs().max(1.0), "{x}: {error}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The wavelengths that a path carries, drawn with the importance of the eye's sensitivity.
 
 use super::cie::{WAVELENGTH_MAX, WAVELENGTH_MIN};
+use crate::functions::ln;
 use crate::lanes::CHUNK;
 
 /// Steepness of the density, in 1/nm (Radziszewski et al. 2009, "An improved technique for full spectral
@@ -97,42 +98,6 @@ fn rotation<const N: usize>(u: f32, i: usize) -> f32 {
 #[inline(always)]
 fn atanh(x: f32) -> f32 {
     0.5 * ln((1.0 + x) / (1.0 - x))
-}
-
-/// The natural logarithm of a positive normal number, within 1e-7 (absolutely, or of its value): the polynomial of Cephes
-/// (`logf.c`, Moshier 1992). Unlike the system's function it is the same everywhere, and vectorises.
-#[inline(always)]
-fn ln(x: f32) -> f32 {
-    const COEFFICIENTS: [f32; 9] = [
-        7.037_683_6e-2,
-        -1.151_461e-1,
-        1.167_699_9e-1,
-        -1.242_014_1e-1,
-        1.424_932_3e-1,
-        -1.666_805_8e-1,
-        2.000_071_4e-1,
-        -2.499_999_4e-1,
-        3.333_333e-1,
-    ];
-    // ln 2, of which the first part times any exponent is exact.
-    const LN_2: [f32; 2] = [0.693_359_4, -2.121_944_4e-4];
-    let bits = x.to_bits();
-    // x = mantissa 2^exponent with a mantissa between sqrt(1/2) and sqrt(2).
-    let half_to_one = f32::from_bits((bits & 0x007f_ffff) | 0x3f00_0000);
-    let is_low = half_to_one < std::f32::consts::FRAC_1_SQRT_2;
-    let exponent = ((bits >> 23) as i32 - 126 - i32::from(is_low)) as f32;
-    let m = if is_low {
-        2.0 * half_to_one
-    } else {
-        half_to_one
-    } - 1.0;
-    let mut polynomial = 0.0;
-    for coefficient in COEFFICIENTS {
-        polynomial = polynomial * m + coefficient;
-    }
-    let square = m * m;
-    let tail = polynomial * m * square + LN_2[1] * exponent - 0.5 * square;
-    m + tail + LN_2[0] * exponent
 }
 
 /// tanh of the scaled distance from the peak at the quantile `u` in [0, 1].
@@ -244,16 +209,6 @@ mod tests {
         // mi.sample_rgb_spectrum(0.25): wavelength, reciprocal density.
         let (nm, pdf) = sample_visible(0.25);
         assert!((nm - 479.15405).abs() < 1e-3 && (1.0 / pdf - 302.17682).abs() < 1e-2);
-    }
-
-    #[test]
-    fn the_logarithm_is_one() {
-        for i in 0..20_000 {
-            let x = 1e-3 * 1.001_f32.powi(i % 14_000) * (1.0 + 1e-5 * (i % 77) as f32);
-            let expected = f64::from(x).ln();
-            let error = (f64::from(ln(x)) - expected).abs();
-            assert!(error < 1e-7 * expected.abs().max(1.0), "{x}: {error}");
-        }
     }
 
     #[test]

@@ -116,8 +116,7 @@ impl LightTree {
         let node = &self.nodes[node as usize];
         match &node.lights {
             NodeLights::One(light) => {
-                let can_arrive = can_arrive(light, receiver);
-                descent.child = if can_arrive {
+                descent.child = if can_arrive(light, receiver) {
                     node.children[0]
                 } else {
                     Child::None
