@@ -29,12 +29,10 @@ fn context(coherence: Coherence) -> raw::RTCIntersectContext {
 ///
 /// Debian's build of Embree 3.13.5 can hang for ever, or read beyond its stack, when coherent packets
 /// of 16 rays, or streams of them, are tested for occlusion on a processor with AVX-512: the compiler
-/// keeps a mask of 16 bits and reads 64 back. It happens in scenes both robust and compact, and in all
-/// scenes with instances. Those are therefore traced as if the rays were incoherent; the answer is the
-/// same.
+/// keeps a mask of 16 bits and reads 64 back. It happens in compact scenes and in all scenes with
+/// instances. Those are therefore traced as if the rays were incoherent; the answer is the same.
 pub fn occlusion_coherence(scene: &Scene, asked: Coherence) -> Coherence {
-    let options = scene.options();
-    if scene.has_instances() || options.robust && options.compact {
+    if scene.has_instances() || scene.options().compact {
         Coherence::Incoherent
     } else {
         asked
