@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use cohort::embree::{
-    BuildOptions, Device, EmbreeError, IndexBuffer, Scene, SceneBuilder, TriangleMesh, VertexBuffer,
+    BuildOptions, Device, EmbreeError, QuadMesh, Scene, SceneBuilder, VertexBuffer,
 };
 
 /// The threads of this process.
@@ -21,18 +21,18 @@ fn build(threads: usize) -> Result<Scene, EmbreeError> {
         let (x, y) = ((i % side) as f32, (i / side) as f32);
         [x, y, (0.1 * x).sin() * (0.1 * y).cos()]
     });
-    let triangles = (0..side - 1).flat_map(|y| {
-        (0..side - 1).flat_map(move |x| {
+    let quads = (0..side - 1).flat_map(|y| {
+        (0..side - 1).map(move |x| {
             let a = y * side + x;
-            [[a, a + 1, a + side], [a + 1, a + side + 1, a + side]]
+            [a, a + 1, a + side + 1, a + side]
         })
     });
-    let mesh = TriangleMesh::new(
+    let mesh = QuadMesh::new(
         Arc::new(VertexBuffer::new(corners)),
-        Arc::new(IndexBuffer::new(triangles.collect())),
+        Arc::new(quads.collect()),
     )?;
     let mut builder = SceneBuilder::new(&device, BuildOptions::default());
-    builder.add_triangles(mesh);
+    builder.add_quads(mesh);
     builder.build()
 }
 

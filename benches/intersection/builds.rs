@@ -91,7 +91,7 @@ impl Build {
             .shapes
             .iter()
             .map(|shape| match &shape.geometry {
-                Geometry::Triangles(mesh) => mesh.indices().len(),
+                Geometry::Triangles(mesh) => mesh.faces().len(),
                 Geometry::Sphere(_) | Geometry::Disk(_) | Geometry::Cylinder(_) => 0,
             });
         Self {

@@ -1,19 +1,6 @@
-//! Buffers that Embree reads where they are, without a copy.
+//! Vertices that Embree reads where they are, without a copy.
 //!
 //! They cannot be changed any more, so they can be shared (by `Arc`) between scenes and with whoever shades the hits.
-
-use std::ops::Deref;
-
-/// The three vertices of each triangle.
-///
-/// Embree loads the last triple with an instruction that reads 16 bytes, 4 more than the triple has;
-/// a triple of zeros behind the last one makes those bytes readable. It does not count: the buffer
-/// dereferences to the triples it was made from.
-#[derive(Clone, Debug)]
-pub struct IndexBuffer {
-    /// The triples and one more.
-    padded: Vec<[u32; 3]>,
-}
 
 /// The vertices of a mesh, each in so many bytes as it needs: shading a hit fetches three of them from anywhere, and what lies
 /// close together is found in the cache more often.
@@ -45,20 +32,6 @@ pub struct SmoothVertex {
     padding: f32,
     /// Unit normal in world space.
     pub normal: [f32; 3],
-}
-
-impl IndexBuffer {
-    /// Takes over the triples. They move once if the vector has no room for one more.
-    pub fn new(mut triples: Vec<[u32; 3]>) -> Self {
-        triples.push([0; 3]);
-        Self { padded: triples }
-    }
-
-    /// Says that triple `index` will be wanted soon, so that the processor need not wait for it then. Any index may be given.
-    #[inline(always)]
-    pub fn prefetch(&self, index: u32) {
-        prefetch(&self.padded, index);
-    }
 }
 
 impl VertexBuffer {
@@ -142,14 +115,6 @@ pub(super) struct VertexLayout {
     pub stride: usize,
 }
 
-impl Deref for IndexBuffer {
-    type Target = [[u32; 3]];
-
-    fn deref(&self) -> &[[u32; 3]] {
-        &self.padded[..self.padded.len() - 1]
-    }
-}
-
 /// Says that entry `index` of `list` will be wanted soon, so that the processor need not wait for it then. Any index may be given.
 #[inline(always)]
 pub(crate) fn prefetch<T>(list: &[T], index: u32) {
@@ -167,18 +132,6 @@ pub(crate) fn prefetch<T>(list: &[T], index: u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn sixteen_bytes_are_readable_at_the_last_triple() {
-        for length in [0, 1, 2, 1000] {
-            let buffer = IndexBuffer::new(vec![[1; 3]; length]);
-            assert_eq!(buffer.len(), length);
-            assert!(buffer.iter().all(|triple| *triple == [1; 3]));
-            let bytes = size_of_val(buffer.padded.as_slice());
-            let last = length.saturating_sub(1) * size_of::<[u32; 3]>();
-            assert!(length == 0 || bytes >= last + 16);
-        }
-    }
 
     #[test]
     fn sixteen_bytes_are_readable_at_every_position() {

@@ -19,8 +19,8 @@ pub enum EmbreeError {
         /// Its own explanation.
         message: String,
     },
-    /// A mesh without triangles.
-    #[error("a triangle mesh needs at least one triangle")]
+    /// A mesh without quads.
+    #[error("a mesh needs at least one triangle")]
     EmptyMesh,
     /// More primitives than Embree can number.
     #[error("{count} primitives in one geometry are more than Embree can number (2³² - 2)")]
@@ -29,7 +29,7 @@ pub enum EmbreeError {
         count: usize,
     },
     /// A vertex that is not a number, is infinite, or is too large for Embree, which would leave
-    /// out its triangles without a word.
+    /// out its quads without a word.
     #[error(
         "vertex {vertex} is at ({}, {}, {}); coordinates must be finite and below 1.8e18",
         position[0], position[1], position[2]
@@ -40,11 +40,11 @@ pub enum EmbreeError {
         /// Its position.
         position: [f32; 3],
     },
-    /// A triangle that refers to a vertex which is not there.
-    #[error("triangle {triangle} refers to vertex {index}, but there are only {vertices} vertices")]
+    /// A quad that refers to a vertex which is not there.
+    #[error("quad {quad} refers to vertex {index}, but there are only {vertices} vertices")]
     IndexOutOfRange {
-        /// Which triangle, from 0.
-        triangle: usize,
+        /// Which quad, from 0.
+        quad: usize,
         /// The index it holds.
         index: u32,
         /// How many vertices there are.

@@ -1,7 +1,7 @@
 //! Ray tracing by Embree, made safe: the only room of the house with `unsafe` code.
 //!
 //! A [`Device`] holds what Embree shares between scenes. A [`SceneBuilder`] collects
-//! [`TriangleMesh`]es, [`UserGeometry`] and [`Instance`]s of other scenes and builds a [`Scene`], which is
+//! [`QuadMesh`]es, [`UserGeometry`] and [`Instance`]s of other scenes and builds a [`Scene`], which is
 //! then traced from any number of threads by one of four kinds of call:
 //!
 //! | call | rays | when |
@@ -28,12 +28,12 @@ mod instance;
 mod lanes;
 mod packet;
 pub mod plain_c;
+mod quad_mesh;
 mod query;
 mod raw;
 mod ray;
 mod scene;
 mod stream;
-mod triangle_mesh;
 mod user_geometry;
 mod version;
 
@@ -41,17 +41,17 @@ mod version;
 mod tests;
 
 pub(crate) use buffer::prefetch;
-pub use buffer::{FlatVertex, IndexBuffer, SmoothVertex, VertexBuffer};
+pub use buffer::{FlatVertex, SmoothVertex, VertexBuffer};
 pub use denormals::{DenormalsFlushed, flush_denormals_to_zero};
 pub use device::Device;
 pub use error::{EmbreeError, ErrorKind};
 pub use geometry::{Bounds, GeometryId, INVALID_GEOMETRY};
 pub use instance::{Affine, Instance};
 pub use packet::{HitPacket, RayHitPacket, RayPacket, ValidMask};
+pub use quad_mesh::{Half, QuadMesh};
 pub use query::Coherence;
 pub use ray::{Hit1, Ray1, RayHit1};
 pub use scene::{BuildOptions, BuildQuality, Scene, SceneBuilder};
-pub use stream::{Hits, Rays, RaysMut};
-pub use triangle_mesh::TriangleMesh;
+pub use stream::{Hits, OnPrimitives, Rays, RaysMut};
 pub use user_geometry::{UserGeometry, UserHit, UserRay};
 pub use version::{Version, version};

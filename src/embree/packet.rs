@@ -78,7 +78,7 @@ pub struct HitPacket<const K: usize> {
     /// The geometric normals, of any length: all x, all y, all z. In world space, or in the space of the scene that stands in
     /// an instance.
     pub normal: [[f32; K]; 3],
-    /// First coordinate on the primitive (see [`super::TriangleMesh`]).
+    /// First coordinate on the primitive (see [`super::QuadMesh`]).
     pub u: [f32; K],
     /// Second coordinate on the primitive.
     pub v: [f32; K],

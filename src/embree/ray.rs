@@ -53,7 +53,7 @@ impl Ray1 {
 pub struct Hit1 {
     /// The geometric normal, of any length: in world space, or in the space of the scene that stands in an instance.
     pub normal: [f32; 3],
-    /// First coordinate on the primitive (see [`super::TriangleMesh`]).
+    /// First coordinate on the primitive (see [`super::QuadMesh`]).
     pub u: f32,
     /// Second coordinate on the primitive.
     pub v: f32,

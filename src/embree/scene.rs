@@ -7,8 +7,8 @@ use super::device::Device;
 use super::error::EmbreeError;
 use super::geometry::{Bounds, GeometryId};
 use super::instance::Instance;
+use super::quad_mesh::QuadMesh;
 use super::raw;
-use super::triangle_mesh::TriangleMesh;
 use super::user_geometry::{UserData, UserGeometry};
 
 /// How much time goes into a tree that is faster to trace.
@@ -43,7 +43,7 @@ pub struct SceneBuilder {
 
 /// What a scene keeps alive, because Embree only points to it.
 enum Geometry {
-    Triangles(TriangleMesh),
+    Quads(QuadMesh),
     User(Arc<UserData>),
     Instance(Instance),
 }
@@ -59,8 +59,8 @@ impl SceneBuilder {
     }
 
     /// Adds a mesh and returns its number.
-    pub fn add_triangles(&mut self, mesh: TriangleMesh) -> GeometryId {
-        self.add(|_| Geometry::Triangles(mesh))
+    pub fn add_quads(&mut self, mesh: QuadMesh) -> GeometryId {
+        self.add(|_| Geometry::Quads(mesh))
     }
 
     /// Adds geometry with its own code and returns its number.
@@ -119,7 +119,7 @@ impl SceneBuilder {
         }
         for (id, geometry) in scene.geometries.iter().enumerate() {
             let handle = match geometry {
-                Geometry::Triangles(mesh) => mesh.to_embree(&scene.device)?,
+                Geometry::Quads(mesh) => mesh.to_embree(&scene.device)?,
                 Geometry::User(data) => data.to_embree(&scene.device)?,
                 Geometry::Instance(instance) => instance.to_embree(&scene.device)?,
             };
@@ -140,7 +140,7 @@ fn distinct_scenes(geometries: &[Geometry]) -> Vec<Arc<Scene>> {
     let mut known = HashSet::new();
     let scenes = geometries.iter().filter_map(|geometry| match geometry {
         Geometry::Instance(instance) => Some(instance.scene()),
-        Geometry::Triangles(_) | Geometry::User(_) => None,
+        Geometry::Quads(_) | Geometry::User(_) => None,
     });
     scenes
         .filter(|scene| known.insert(Arc::as_ptr(scene)))

@@ -165,6 +165,19 @@ pub struct RaysMut<'a> {
     pub tfar: &'a mut [f32],
 }
 
+/// What was hit and where on it, of as many rays in each slice.
+#[derive(Debug)]
+pub struct OnPrimitives<'a> {
+    /// Every geometry.
+    pub geometry_id: &'a [u32],
+    /// Every primitive.
+    pub primitive_id: &'a mut [u32],
+    /// Every first coordinate.
+    pub u: &'a mut [f32],
+    /// Every second coordinate.
+    pub v: &'a mut [f32],
+}
+
 /// What the rays of a stream hit. Each t is the ray's `tfar`.
 ///
 /// Only the geometry of a miss is defined: [`INVALID_GEOMETRY`]. The rest is left from earlier.
@@ -232,6 +245,16 @@ impl Hits {
         }
     }
 
+    /// Where on primitives the rays hit, to be told in other terms.
+    pub fn on_primitives(&mut self) -> OnPrimitives<'_> {
+        OnPrimitives {
+            geometry_id: &self.geometry_id,
+            primitive_id: &mut self.primitive_id,
+            u: &mut self.u,
+            v: &mut self.v,
+        }
+    }
+
     /// Becomes the hits of `source` in another order: number `order[i]` in place i.
     ///
     /// # Panics
@@ -273,7 +296,7 @@ impl Hits {
         std::array::from_fn(|axis| self.normal[axis][i])
     }
 
-    /// The two coordinates on the primitive (see [`super::TriangleMesh`]) where ray `i` hit.
+    /// The two coordinates on the primitive (see [`super::QuadMesh`]) where ray `i` hit.
     #[inline]
     pub fn uv(&self, i: usize) -> [f32; 2] {
         [self.u[i], self.v[i]]

@@ -46,9 +46,9 @@ pub use sensors::{
     PixelFormat, ReconstructionFilter, ThinLens, ThinLensView,
 };
 pub use shapes::{
-    AttributesAt, Cylinder, CylinderHit, Disk, DiskHit, Geometry, HitCoordinates, Instance, Shape,
-    ShapeGroup, ShapeSample, Sphere, SurfaceParameters, SurfacePoint, TriangleAttributes,
-    Triangles,
+    AttributesAt, Cylinder, CylinderHit, Disk, DiskHit, Faces, Geometry, HitCoordinates, Instance,
+    Shape, ShapeGroup, ShapeSample, Sphere, SurfaceParameters, SurfacePoint, TextureCoordinates,
+    TriangleAttributes, Triangles,
 };
 pub(crate) use shapes::{CornerLanes, Parallelogram, PlaneLanes, Planes, SurfaceLanes};
 pub use source::{Source, Sources};

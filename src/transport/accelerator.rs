@@ -1,13 +1,15 @@
 //! The scene's shapes in the intersection layer.
 
 use std::num::NonZeroUsize;
+use std::slice::from_mut;
 use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::triangle_names::TriangleNames;
 use crate::embree::{
     self, Affine, Bounds, BuildOptions, BuildQuality, Coherence, Device, EmbreeError, Hits,
-    INVALID_GEOMETRY, RayHit1, Rays, Scene as EmbreeScene, SceneBuilder, TriangleMesh,
+    INVALID_GEOMETRY, OnPrimitives, QuadMesh, RayHit1, Rays, Scene as EmbreeScene, SceneBuilder,
     UserGeometry, UserHit, UserRay,
 };
 use crate::scene::{Cylinder, Disk, Geometry, Instance, Scene, Shape, Sphere};
@@ -26,13 +28,15 @@ pub struct AcceleratorOptions {
 /// All shapes of a scene, ready to be intersected.
 ///
 /// The shapes that stand in the world are the first geometries of the intersection layer's scene, and instances of groups are those
-/// that follow. A group is a scene of its own, in which geometries are numbered from 0 on; hits that leave this room name the shape.
+/// that follow. A group is a scene of its own, in which geometries are numbered from 0 on; meshes are quads. Hits that leave this room
+/// name the shape and the triangle.
 pub struct Accelerator {
     scene: EmbreeScene,
     /// How many shapes stand in the world: the number of the first instance.
     first_instance: u32,
     /// By instance: the first shape of its group.
     first_shapes: Vec<u32>,
+    triangles: TriangleNames,
 }
 
 impl Accelerator {
@@ -75,24 +79,36 @@ impl Accelerator {
             scene: builder.build()?,
             first_instance: in_world.len() as u32,
             first_shapes,
+            triangles: TriangleNames::of(&scene.shapes),
         })
     }
 
-    /// Finds the nearest hits of a stream of rays in world space.
+    /// Finds the nearest hits of a stream of rays in world space, which have no names before [`Self::name`].
     pub fn nearest(&self, rays: &mut Rays, hits: &mut Hits, coherence: Coherence) {
         self.scene.intersect_stream(rays, hits, coherence);
+    }
+
+    /// Lets hits name the shapes and triangles that [`Self::nearest`] found.
+    pub fn name(&self, hits: &mut Hits) {
         if self.scene.has_instances() {
             hits.renumber_instanced(|instance, geometry| self.shape_number(instance, geometry));
         }
+        self.triangles.name(&mut hits.on_primitives());
     }
 
-    /// Finds the nearest hit of one ray in world space.
+    /// Finds the nearest hit of one ray in world space, and names it.
     pub fn nearest1(&self, ray: &mut RayHit1, coherence: Coherence) {
         self.scene.intersect1(ray, coherence);
         let hit = &mut ray.hit;
         if hit.is_hit() && hit.instance_id != INVALID_GEOMETRY {
             hit.geometry_id = self.shape_number(hit.instance_id, hit.geometry_id);
         }
+        self.triangles.name(&mut OnPrimitives {
+            geometry_id: &[hit.geometry_id],
+            primitive_id: from_mut(&mut hit.primitive_id),
+            u: from_mut(&mut hit.u),
+            v: from_mut(&mut hit.v),
+        });
     }
 
     /// The number of the shape that is number `geometry` of the group that the instance number `instance` shows.
@@ -124,8 +140,8 @@ impl Accelerator {
 fn add(builder: &mut SceneBuilder, shape: &Shape) -> Result<(), EmbreeError> {
     match &shape.geometry {
         Geometry::Triangles(mesh) => {
-            let mesh = TriangleMesh::new(mesh.vertices().clone(), mesh.indices().clone())?;
-            builder.add_triangles(mesh)
+            let mesh = QuadMesh::new(mesh.vertices().clone(), mesh.faces().quads().clone())?;
+            builder.add_quads(mesh)
         }
         Geometry::Sphere(sphere) => builder.add_user(*sphere),
         Geometry::Disk(disk) => builder.add_user(*disk),

@@ -18,6 +18,7 @@ pub(super) fn nearest<C: Colour>(
     let start = Instant::now();
     accelerator.nearest(&mut segments.rays, &mut segments.hits, coherence);
     statistics.intersection_time += start.elapsed();
+    accelerator.name(&mut segments.hits);
     statistics.rays += segments.len() as u64;
 }
 

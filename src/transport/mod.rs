@@ -42,6 +42,7 @@ mod stages;
 mod statistics;
 mod surface;
 mod tracer;
+mod triangle_names;
 mod variant;
 mod walk_stage;
 

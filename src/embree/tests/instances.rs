@@ -9,7 +9,7 @@ use super::super::{
 };
 use super::brute_force::{Nearest, nearest};
 use super::forms::{Answer, intersect_forms, occluded_forms};
-use super::triangles::{mesh, random_rays, random_triangles};
+use super::quads::{mesh, random_rays, random_triangles};
 use super::user_geometry::{SPHERES, Spheres};
 use super::{Numbers, all_options, device};
 
@@ -73,11 +73,11 @@ impl Village {
     fn scene(&self, device: &Device, options: BuildOptions) -> Scene {
         let mut builder = SceneBuilder::new(device, options);
         let (first, second) = self.house.split_at(SPLIT);
-        builder.add_triangles(mesh(first));
-        assert_eq!(builder.add_triangles(mesh(second)), GeometryId(1));
+        builder.add_quads(mesh(first));
+        assert_eq!(builder.add_quads(mesh(second)), GeometryId(1));
         let house = Arc::new(builder.build().expect("two meshes are a scene"));
         let mut builder = SceneBuilder::new(device, options);
-        builder.add_triangles(mesh(&self.world));
+        builder.add_quads(mesh(&self.world));
         in_all_places(&house, &mut builder);
         builder.build().expect("a mesh and instances are a scene")
     }
@@ -169,7 +169,7 @@ fn every_form_of_call_agrees_with_triangles_moved_by_hand() {
 fn bubbles(device: &Device, options: BuildOptions, panics: bool) -> Scene {
     let spheres = SPHERES.to_vec();
     let mut builder = SceneBuilder::new(device, options);
-    builder.add_triangles(mesh(&[[[9.0; 3], [9.0, 10.0, 9.0], [9.0, 9.0, 10.0]]]));
+    builder.add_quads(mesh(&[[[9.0; 3], [9.0, 10.0, 9.0], [9.0, 9.0, 10.0]]]));
     builder.add_user(Spheres { spheres, panics });
     let group = Arc::new(builder.build().expect("two spheres are a scene"));
     let mut builder = SceneBuilder::new(device, options);
@@ -273,7 +273,7 @@ fn a_panic_in_an_instance_is_reported() {
 fn the_arrays_of_a_stream_have_instances_only_where_the_scene_has() {
     let (village, device) = (Village::new(), device());
     let mut builder = SceneBuilder::new(&device, BuildOptions::default());
-    builder.add_triangles(mesh(&village.world));
+    builder.add_quads(mesh(&village.world));
     let without = builder.build().expect("a mesh is a scene");
     let with = village.scene(&device, BuildOptions::default());
     let (mut rays, mut hits) = (Rays::new(), Hits::new());
@@ -326,7 +326,7 @@ fn what_cannot_be_instanced_is_an_error() {
     assert_eq!(nested.err(), Some(EmbreeError::NestedInstance));
     let house = || {
         let mut builder = SceneBuilder::new(&device, BuildOptions::default());
-        builder.add_triangles(mesh(&village.house));
+        builder.add_quads(mesh(&village.house));
         Arc::new(builder.build().expect("a mesh is a scene"))
     };
     let flat = Affine {
@@ -347,7 +347,7 @@ fn a_thousand_instances_take_the_memory_of_one_and_of_their_places() {
     let bytes = |instances: usize| {
         let device = device();
         let mut builder = SceneBuilder::new(&device, BuildOptions::default());
-        builder.add_triangles(mesh(&triangles));
+        builder.add_quads(mesh(&triangles));
         let group = Arc::new(builder.build().expect("a mesh is a scene"));
         let mut builder = SceneBuilder::new(&device, BuildOptions::default());
         for i in 0..instances {

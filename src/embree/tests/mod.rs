@@ -4,7 +4,7 @@ mod brute_force;
 mod forms;
 mod instances;
 mod plain_c_forms;
-mod triangles;
+mod quads;
 mod user_geometry;
 
 use std::num::NonZeroUsize;

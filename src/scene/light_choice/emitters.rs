@@ -93,7 +93,7 @@ fn normals(geometry: &Geometry) -> Cone {
     match geometry {
         Geometry::Triangles(mesh) => {
             let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)];
-            let triangles = 0..mesh.indices().len() as u32;
+            let triangles = 0..mesh.faces().len() as u32;
             // Without a normal a triangle has no area, and does not shine.
             Cone::about(
                 triangles

@@ -33,6 +33,24 @@ impl MeshAttribute {
         }
     }
 
+    /// The same with the values in another order: number `order[i]` in place i.
+    pub fn reordered(&self, order: impl Iterator<Item = usize>) -> Self {
+        let values = match &self.values {
+            AttributeValues::Numbers(numbers) => {
+                AttributeValues::Numbers(order.map(|i| numbers[i]).collect())
+            }
+            AttributeValues::Colours(colours) => {
+                let colours = order.map(|i| colours.rgb(i)).collect();
+                AttributeValues::Colours(Reflectances::new(colours))
+            }
+        };
+        Self {
+            name: self.name.clone(),
+            is_of_faces: self.is_of_faces,
+            values,
+        }
+    }
+
     /// The first colour component that is not in `range`.
     pub fn colour_outside(&self, range: RangeInclusive<f32>) -> Option<f32> {
         match &self.values {

@@ -6,6 +6,7 @@ mod error;
 pub mod knot;
 mod normals;
 pub mod obj;
+pub(in crate::scene) mod pairing;
 pub mod ply;
 pub mod serialized;
 mod write;

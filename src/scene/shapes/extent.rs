@@ -17,7 +17,7 @@ impl Geometry {
     pub fn bounds(&self) -> [Vec3; 2] {
         match self {
             Self::Triangles(mesh) => {
-                let used = mesh.indices().iter().flatten();
+                let used = mesh.faces().quads().iter().flatten();
                 let positions = used.map(|&index| Vec3::from(mesh.vertices().position(index)));
                 positions.fold(
                     [Vec3::INFINITY, Vec3::NEG_INFINITY],

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::{HitCoordinates, SurfacePoint, Triangles};
+use crate::embree::Half;
 use crate::sampling::{AliasTable, warp};
 
 /// How points of a mesh are drawn uniformly by area.
@@ -35,17 +36,15 @@ impl MeshSampling {
         Some(Self::parallelogram(mesh).unwrap_or(Self::ByTriangle(by_triangle)))
     }
 
-    /// For a flat mesh `a b c`, `c d a` with a - b = d - c.
+    /// For a flat mesh of one pair `a b d`, `c d b` with b - a = c - d.
     fn parallelogram(mesh: &Triangles) -> Option<Self> {
-        let [first, second] = mesh.indices()[..] else {
+        let [quad] = mesh.faces().quads()[..] else {
             return None;
         };
-        let shares_diagonal = first[0] == second[2] && first[2] == second[0];
-        if mesh.is_smooth() || !shares_diagonal {
+        if mesh.is_smooth() || mesh.faces().alone() > 0 {
             return None;
         }
-        let [a, b, c, d] = [first[0], first[1], first[2], second[1]]
-            .map(|i| Vec3::from(mesh.vertices().position(i)));
+        let [a, b, c, d] = quad.map(|i| Vec3::from(mesh.vertices().position(i)));
         let (first_edge, second_edge) = (b - a, d - a);
         let tolerance = 1e-6 * (first_edge.length() + second_edge.length());
         let closes = (first_edge + second_edge - (c - a)).length() <= tolerance;
@@ -87,9 +86,10 @@ impl MeshSampling {
                     warp::triangle([chosen.remainder, u[1]]),
                 )
             }
-            // The triangles `a b c` and `c d a`.
-            Self::Parallelogram(_) if u[1] <= u[0] => (0, [u[0] - u[1], u[1]]),
-            Self::Parallelogram(_) => (1, [u[1] - u[0], 1.0 - u[1]]),
+            Self::Parallelogram(_) => {
+                let half = Half::of(u[0], u[1]);
+                (u32::from(half.is_second), [half.u, half.v])
+            }
         };
         HitCoordinates {
             primitive,

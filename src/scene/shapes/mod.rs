@@ -8,6 +8,7 @@ mod cylinder;
 mod disk;
 mod drawn;
 mod extent;
+mod faces;
 mod instance;
 mod lanes;
 mod mesh_file;
@@ -21,6 +22,7 @@ mod triangles;
 
 pub use cylinder::{Cylinder, CylinderHit};
 pub use disk::{Disk, DiskHit};
+pub use faces::Faces;
 pub use instance::Instance;
 pub(crate) use lanes::{CornerLanes, SurfaceLanes};
 pub(crate) use mesh_sampling::Parallelogram;
@@ -29,7 +31,7 @@ use planes::Plane;
 pub(crate) use planes::{PlaneLanes, Planes};
 pub use shape_group::ShapeGroup;
 pub use sphere::Sphere;
-pub use triangles::{TriangleAttributes, Triangles};
+pub use triangles::{TextureCoordinates, TriangleAttributes, Triangles};
 
 use std::collections::HashMap;
 

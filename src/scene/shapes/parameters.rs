@@ -91,7 +91,7 @@ pub(super) mod tests {
                         solution.x >= 0.0 && solution.y >= 0.0 && solution.x + solution.y <= 1.0;
                     inside.then_some((primitive, solution.x, solution.y, solution.z))
                 };
-                let hits = (0..mesh.indices().len() as u32).filter_map(meet);
+                let hits = (0..mesh.faces().len() as u32).filter_map(meet);
                 let (primitive, u, v, _) = hits.min_by(|a, b| a.3.total_cmp(&b.3)).unwrap();
                 (primitive, u, v, Vec3::Z)
             }

@@ -58,7 +58,7 @@ impl Planes {
             };
             let first = all.len();
             // Beyond that there are no numbers; the triangles are found by their corners.
-            if first + mesh.indices().len() >= Self::NONE as usize {
+            if first + mesh.faces().len() >= Self::NONE as usize {
                 return Self::NONE;
             }
             match mesh.planes() {

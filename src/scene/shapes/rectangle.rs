@@ -7,7 +7,8 @@
 
 use crate::scene::mesh::MeshData;
 
-/// The rectangle in its own space.
+/// The rectangle in its own space. Its triangles meet where the first corner is not, so that a lamp's points are drawn from the square of its
+/// texture coordinates.
 pub(crate) fn rectangle() -> MeshData {
     MeshData {
         attributes: Vec::new(),
@@ -19,6 +20,6 @@ pub(crate) fn rectangle() -> MeshData {
         ],
         normals: None,
         uvs: Some(vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),
-        triangles: vec![[0, 1, 2], [2, 3, 0]],
+        triangles: vec![[0, 1, 3], [2, 3, 1]],
     }
 }

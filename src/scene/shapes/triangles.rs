@@ -5,15 +5,17 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
 
+use super::faces::{Faces, Reordered};
 use super::lanes::{CornerLanes, SurfaceLanes};
 use super::mesh_sampling::{MeshSampling, Parallelogram};
 use super::{
     AttributesAt, Geometry, HitCoordinates, Placement, Plane, ShapeSample, SurfaceParameters,
     SurfacePoint,
 };
-use crate::embree::{IndexBuffer, VertexBuffer};
+use crate::embree::VertexBuffer;
 use crate::sampling::Frame;
 use crate::scene::error::SceneError;
+use crate::scene::mesh::pairing::{self, Corner, MOST_TRIANGLES};
 use crate::scene::mesh::{self, MeshAttribute, MeshData};
 use crate::scene::xml::Object;
 
@@ -21,23 +23,52 @@ use crate::scene::xml::Object;
 #[derive(Debug)]
 pub struct Triangles {
     vertices: Arc<VertexBuffer>,
-    indices: Arc<IndexBuffer>,
+    faces: Faces,
     attributes: TriangleAttributes,
     area: f32,
-    /// Those of the triangles. Made only for flat meshes that stand in the world: rays are not in the space of a group.
     /// Made only for meshes that emit.
     sampling: Option<MeshSampling>,
 }
 
 /// What a mesh is beside vertices and indices.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct TriangleAttributes {
-    /// Texture coordinates of the vertices.
-    pub uvs: Option<Vec<[f32; 2]>>,
+    /// Where textures lie.
+    pub coordinates: TextureCoordinates,
     /// What else is said of vertices and triangles.
     pub named: Vec<MeshAttribute>,
     /// Whether the clockwise side of the triangles is the outer one.
     pub flip_normals: bool,
+}
+
+/// Where a texture lies on a mesh.
+#[derive(Clone, Debug)]
+pub enum TextureCoordinates {
+    /// The mesh says so of its vertices.
+    OfVertices(Vec<[f32; 2]>),
+    /// The mesh says nothing: the vertices of each triangle, as the mesh was written, are at (0, 0), (1, 0) and (0, 1), as in Mitsuba.
+    /// By triangle: which of these, 0, 1 or 2, its first corner is now.
+    OfTriangles(Vec<u8>),
+}
+
+impl TextureCoordinates {
+    /// Those of a mesh that has none of its own, whose triangles begin at these corners of theirs.
+    fn of_triangles(beginnings: &[Corner]) -> Self {
+        let turned = beginnings.iter().map(|&corner| pairing::place(corner));
+        Self::OfTriangles(turned.collect())
+    }
+
+    /// Those of the corners of a triangle.
+    fn at(&self, triangle: u32, corners: [u32; 3]) -> [Vec2; 3] {
+        match self {
+            Self::OfVertices(all) => corners.map(|vertex| all[vertex as usize].into()),
+            Self::OfTriangles(turned) => {
+                let mut written = [Vec2::ZERO, Vec2::X, Vec2::Y];
+                written.rotate_left(turned[triangle as usize].into());
+                written
+            }
+        }
+    }
 }
 
 impl Triangles {
@@ -97,9 +128,30 @@ impl Triangles {
             None => None,
         };
         let normals = normals.filter(|normals| !are_flat(&mesh, normals));
+        if mesh.triangles.len() > MOST_TRIANGLES {
+            return Err(object.error(format!(
+                "this mesh has {} triangles, more than the {MOST_TRIANGLES} that can be numbered",
+                mesh.triangles.len()
+            )));
+        }
+        let Reordered { faces, beginnings } = Faces::of(&mesh.positions, &mesh.triangles);
+        let named = mesh.attributes.iter().map(|attribute| {
+            if attribute.is_of_faces {
+                attribute.reordered(
+                    beginnings
+                        .iter()
+                        .map(|&corner| pairing::triangle_of(corner)),
+                )
+            } else {
+                attribute.clone()
+            }
+        });
         let attributes = TriangleAttributes {
-            uvs: mesh.uvs.take(),
-            named: std::mem::take(&mut mesh.attributes),
+            named: named.collect(),
+            coordinates: match mesh.uvs.take() {
+                Some(uvs) => TextureCoordinates::OfVertices(uvs),
+                None => TextureCoordinates::of_triangles(&beginnings),
+            },
             flip_normals: placement.flip_normals,
         };
         let vertices = Arc::new(match normals {
@@ -109,29 +161,15 @@ impl Triangles {
             }
             None => VertexBuffer::new(mesh.positions),
         });
-        let indices = Arc::new(IndexBuffer::new(mesh.triangles));
-        Ok(Geometry::Triangles(Self::new(
-            vertices, indices, attributes,
-        )))
-    }
-
-    /// The mesh over buffers in world space. Indices must be in range (every mesh reader of [`crate::scene::mesh`] keeps
-    /// this).
-    pub fn new(
-        vertices: Arc<VertexBuffer>,
-        indices: Arc<IndexBuffer>,
-        attributes: TriangleAttributes,
-    ) -> Self {
-        let area = triangle_areas(&vertices, &indices)
-            .map(f64::from)
-            .sum::<f64>() as f32;
-        Self {
+        let areas = triangle_areas(&vertices, &faces).map(f64::from);
+        let area = areas.sum::<f64>() as f32;
+        Ok(Geometry::Triangles(Self {
             vertices,
-            indices,
+            faces,
             attributes,
             area,
             sampling: None,
-        }
+        }))
     }
 
     /// The planes of the triangles, if the mesh is shaded flat.
@@ -140,7 +178,7 @@ impl Triangles {
             return None;
         };
         let flipped = self.attributes.flip_normals;
-        Some(self.indices.iter().map(move |triangle| {
+        Some(self.faces.iter().map(move |triangle| {
             let corners = triangle.map(|corner| vertices[corner as usize].position.into());
             Plane::of(corners, flipped)
         }))
@@ -165,9 +203,9 @@ impl Triangles {
         &self.vertices
     }
 
-    /// The vertex indices of the triangles.
-    pub fn indices(&self) -> &Arc<IndexBuffer> {
-        &self.indices
+    /// The triangles.
+    pub fn faces(&self) -> &Faces {
+        &self.faces
     }
 
     /// Keeps of the named attributes those that are among `names`; the first of the names that there is nothing of is an error.
@@ -219,7 +257,7 @@ impl Triangles {
         points.get(0)
     }
 
-    /// Where a hit lies in the texture coordinates of the vertices; without them, its barycentric coordinates.
+    /// Where a hit lies in the texture coordinates.
     pub(super) fn parameters(
         &self,
         hit: &HitCoordinates,
@@ -236,16 +274,7 @@ impl Triangles {
             corners,
             barycentric: [hit.u, hit.v],
         });
-        let Some(uvs) = &self.attributes.uvs else {
-            return SurfaceParameters {
-                uv: Vec2::new(hit.u, hit.v),
-                dp_du: ab,
-                dp_dv: ac,
-                geometric_normal,
-                attributes,
-            };
-        };
-        let [uv_a, uv_b, uv_c] = corners.map(|i| Vec2::from(uvs[i as usize]));
+        let [uv_a, uv_b, uv_c] = self.attributes.coordinates.at(hit.primitive, corners);
         let (uv_ab, uv_ac) = (uv_b - uv_a, uv_c - uv_a);
         let uv = uv_a + uv_ab * hit.u + uv_ac * hit.v;
         let determinant = uv_ab.perp_dot(uv_ac);
@@ -273,13 +302,13 @@ impl Triangles {
     /// after the other.
     #[inline]
     pub(crate) fn corners(&self, triangle: u32) -> [u32; 3] {
-        self.indices[triangle as usize]
+        self.faces.corners(triangle)
     }
 
     /// Says that [`Self::corners`] of a triangle will be asked for soon.
     #[inline(always)]
     pub(crate) fn prefetch_corners(&self, triangle: u32) {
-        self.indices.prefetch(triangle);
+        self.faces.prefetch(triangle);
     }
 
     /// Says that [`Self::fetch`] will be asked for soon.
@@ -318,7 +347,7 @@ impl Triangles {
     }
 
     pub(super) fn triangle_areas(&self) -> impl Iterator<Item = f32> {
-        triangle_areas(&self.vertices, &self.indices)
+        triangle_areas(&self.vertices, &self.faces)
     }
 
     #[inline(always)]
@@ -345,8 +374,8 @@ impl Triangles {
     }
 }
 
-fn triangle_areas(vertices: &VertexBuffer, indices: &[[u32; 3]]) -> impl Iterator<Item = f32> {
-    indices.iter().map(|triangle| {
+fn triangle_areas(vertices: &VertexBuffer, faces: &Faces) -> impl Iterator<Item = f32> {
+    faces.iter().map(|triangle| {
         let [a, b, c] = triangle.map(|i| Vec3::from(vertices.position(i)));
         0.5 * (b - a).cross(c - a).length()
     })

@@ -401,6 +401,7 @@ fn streams_and_single_rays_name_the_same_shapes() {
     traced
         .accelerator
         .nearest(&mut rays, &mut hits, Coherence::Coherent);
+    traced.accelerator.name(&mut hits);
     let position = |shape: &Shape| {
         traced
             .scene

@@ -1,44 +1,64 @@
-//! Random triangles, random rays.
+//! Random triangles, alone and in pairs; random rays.
 
 use std::sync::Arc;
 
 use super::super::{
-    BuildOptions, Coherence, Device, GeometryId, Hits, INVALID_GEOMETRY, IndexBuffer, Ray1, Rays,
-    Scene, SceneBuilder, TriangleMesh, VertexBuffer,
+    BuildOptions, Coherence, Device, GeometryId, Half, Hits, INVALID_GEOMETRY, QuadMesh, Ray1,
+    Rays, Scene, SceneBuilder, VertexBuffer,
 };
 use super::brute_force::{Nearest, nearest};
 use super::forms::{Answer, INTERSECT, intersect_forms, occluded_forms};
 use super::{Numbers, all_options, device};
 
-/// Triangles in two meshes of a scene, the second starting at `split`.
+/// Triangles in two meshes of a scene: those before `split` alone, those from there on two by two.
 struct Soup {
     triangles: Vec<[[f32; 3]; 3]>,
     split: usize,
 }
 
+/// Which triangle a hit is told to be of.
+#[derive(Debug, PartialEq)]
+struct Name {
+    geometry: u32,
+    quad: u32,
+    is_second: bool,
+}
+
 impl Soup {
     fn new(count: usize) -> Self {
-        Self {
-            triangles: random_triangles(1, count),
-            split: count / 3,
+        let mut triangles = random_triangles(1, count);
+        let split = count / 4 * 2;
+        for pair in triangles[split..].chunks_exact_mut(2) {
+            let [first, second] = pair else { continue };
+            let [_, b, d] = *first;
+            // Its own corner may be anywhere near.
+            let c = second[0].map(|coordinate| 0.5 * coordinate);
+            let c = std::array::from_fn(|axis| b[axis] + c[axis]);
+            *second = [c, d, b];
         }
+        Self { triangles, split }
     }
 
     fn scene(&self, device: &Device, options: BuildOptions) -> Scene {
-        let (first, second) = self.triangles.split_at(self.split);
+        let (alone, paired) = self.triangles.split_at(self.split);
         let mut builder = SceneBuilder::new(device, options);
-        assert_eq!(builder.add_triangles(mesh(first)), GeometryId(0));
-        assert_eq!(builder.add_triangles(mesh(second)), GeometryId(1));
+        assert_eq!(builder.add_quads(mesh(alone)), GeometryId(0));
+        assert_eq!(builder.add_quads(mesh_of_pairs(paired)), GeometryId(1));
         builder.build().expect("the soup is a scene")
     }
 
-    /// The geometry and primitive of a triangle.
-    fn ids(&self, triangle: u32) -> (u32, u32) {
-        let split = self.split as u32;
-        if triangle < split {
-            (0, triangle)
-        } else {
-            (1, triangle - split)
+    fn name(&self, triangle: u32) -> Name {
+        match triangle.checked_sub(self.split as u32) {
+            None => Name {
+                geometry: 0,
+                quad: triangle,
+                is_second: false,
+            },
+            Some(number) => Name {
+                geometry: 1,
+                quad: number / 2,
+                is_second: number % 2 == 1,
+            },
         }
     }
 }
@@ -56,14 +76,27 @@ pub(super) fn random_triangles(seed: u64, count: usize) -> Vec<[[f32; 3]; 3]> {
     (0..count).map(triangle).collect()
 }
 
-pub(super) fn mesh(triangles: &[[[f32; 3]; 3]]) -> TriangleMesh {
+/// Every triangle alone in its quad.
+pub(super) fn mesh(triangles: &[[[f32; 3]; 3]]) -> QuadMesh {
     let vertices = triangles.iter().flatten().copied();
-    let indices = (0..triangles.len() as u32)
-        .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
-        .collect();
-    TriangleMesh::new(
+    let quads = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2, 3 * i + 2]);
+    QuadMesh::new(
         Arc::new(VertexBuffer::new(vertices)),
-        Arc::new(IndexBuffer::new(indices)),
+        Arc::new(quads.collect()),
+    )
+    .expect("the soup is a mesh")
+}
+
+/// Two triangles (a, b, d) and (c, d, b) to a quad.
+fn mesh_of_pairs(triangles: &[[[f32; 3]; 3]]) -> QuadMesh {
+    let corners = triangles.chunks_exact(2).flat_map(|pair| {
+        let ([a, b, d], [c, ..]) = (pair[0], pair[1]);
+        [a, b, c, d]
+    });
+    let quads = (0..triangles.len() as u32 / 2).map(|i| std::array::from_fn(|k| 4 * i + k as u32));
+    QuadMesh::new(
+        Arc::new(VertexBuffer::new(corners)),
+        Arc::new(quads.collect()),
     )
     .expect("the soup is a mesh")
 }
@@ -91,8 +124,13 @@ fn assert_same(soup: &Soup, ray: &Ray1, answer: &Answer, expected: Option<Neares
         assert_eq!(answer.tfar, ray.tfar, "{what}");
         return;
     };
-    let ids = (answer.hit.geometry_id, answer.hit.primitive_id);
-    assert_eq!(ids, soup.ids(expected.triangle), "{what}");
+    let half = Half::of(answer.hit.u, answer.hit.v);
+    let name = Name {
+        geometry: answer.hit.geometry_id,
+        quad: answer.hit.primitive_id,
+        is_second: half.is_second,
+    };
+    assert_eq!(name, soup.name(expected.triangle), "{what}");
     let close = |is: f32, expected: f64, scale: f64| {
         assert!(
             (f64::from(is) - expected).abs() < 1e-4 * scale,
@@ -101,8 +139,8 @@ fn assert_same(soup: &Soup, ray: &Ray1, answer: &Answer, expected: Option<Neares
     };
     close(answer.tfar, expected.t, 1.0);
     // A sliver's coordinates are less exact.
-    close(answer.hit.u, expected.u, 10.0);
-    close(answer.hit.v, expected.v, 10.0);
+    close(half.u, expected.u, 10.0);
+    close(half.v, expected.v, 10.0);
     for axis in 0..3 {
         close(answer.hit.normal[axis], expected.normal[axis], 0.1);
     }
