@@ -31,29 +31,39 @@ impl TriangleNames {
     }
 }
 
+/// So many hits are renamed at once.
+const LANES: usize = 64;
+
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
 fn name<'a>(first_pairs: &[u32], hits: &mut OnPrimitives<'a>) {
     let miss = first_pairs.len() - 1;
-    let coordinates = hits.u.iter_mut().zip(hits.v.iter_mut());
-    let primitives = hits.geometry_id.iter().zip(hits.primitive_id.iter_mut());
-    for ((&shape, primitive), (u, v)) in primitives.zip(coordinates) {
-        let first_pair = first_pairs[miss.min(shape as usize)];
-        let quad = *primitive;
-        let half = Half::of(*u, *v);
-        let is_pair = quad >= first_pair;
-        let is_second = is_pair & half.is_second;
-        // Two triangles for each pair before it. What a miss has means nothing, and may be any number.
-        let before = if is_pair {
-            quad.wrapping_sub(first_pair)
-        } else {
-            0
-        };
-        *primitive = quad.wrapping_add(before).wrapping_add(is_second.into());
-        *u = if is_second { half.u } else { *u };
-        *v = if is_second { half.v } else { *v };
+    let coordinates = (hits.u.chunks_mut(LANES)).zip(hits.v.chunks_mut(LANES));
+    let primitives = (hits.geometry_id.chunks(LANES)).zip(hits.primitive_id.chunks_mut(LANES));
+    for ((shapes, primitives), (us, vs)) in primitives.zip(coordinates) {
+        // Looked up before, so that what follows goes over lanes.
+        let mut first_pair = [0; LANES];
+        for (first_pair, &shape) in first_pair.iter_mut().zip(shapes) {
+            *first_pair = first_pairs[miss.min(shape as usize)];
+        }
+        let coordinates = us.iter_mut().zip(vs);
+        let quads = primitives.iter_mut().zip(first_pair);
+        for ((primitive, first_pair), (u, v)) in quads.zip(coordinates) {
+            let quad = *primitive;
+            let half = Half::of(*u, *v);
+            let is_pair = quad >= first_pair;
+            let is_second = is_pair & half.is_second;
+            // Two triangles for each pair before it. What a miss has means nothing, and may be any number.
+            let before = quad.max(first_pair) - first_pair;
+            *primitive = quad.wrapping_add(before).wrapping_add(is_second.into());
+            (*u, *v) = if is_second {
+                (half.u, half.v)
+            } else {
+                (*u, *v)
+            };
+        }
     }
 }
 
