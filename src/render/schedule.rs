@@ -11,7 +11,7 @@ const FULL_PASS: u32 = 16;
 const LESSONS: [u32; 2] = [32, 2];
 
 /// With so many camera paths, an image of many pixels has learned enough. Four times as many are worth no more by rays, and what they teach takes longer
-/// to look up; half as many are too few (`docs/strategies.md`).
+/// to look up; half as many are too few (`docs/tried.md`).
 const TEACHING_PATHS: usize = 1 << 19;
 
 /// The weight of a sample of which others learn, for it has not learned enough itself.

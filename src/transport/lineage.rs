@@ -7,7 +7,7 @@ use crate::spectrum::{Colour, SpectrumArithmetic};
 
 /// What a camera ray costs with what is done where it ends, where a bounce costs 1. It has neighbours that go its way, and nothing has to be scattered for it.
 ///
-/// Both costs were chosen by the error of whole renders (docs/strategies.md, "What was tried").
+/// Both costs were chosen by the error of whole renders (`docs/tried.md`, "What rays cost").
 const CAMERA_RAY_COST: f32 = 0.4;
 
 /// What a shadow ray costs: it ends at the first thing that it meets, and nothing is done there.
