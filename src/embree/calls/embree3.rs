@@ -15,13 +15,18 @@ const LONGEST: usize = 1 << 30;
 
 /// What `rtcInitIntersectContext` makes, which is an inline function of the header.
 fn context(coherence: Coherence) -> raw::RTCIntersectContext {
-    raw::RTCIntersectContext {
-        flags: match coherence {
-            Coherence::Coherent => raw::RTCIntersectContextFlags::COHERENT,
-            Coherence::Incoherent => raw::RTCIntersectContextFlags::INCOHERENT,
-        },
-        filter: None,
-        instID: [INVALID_GEOMETRY],
+    const fn with(flags: raw::RTCIntersectContextFlags) -> raw::RTCIntersectContext {
+        raw::RTCIntersectContext {
+            flags,
+            filter: None,
+            instID: [INVALID_GEOMETRY],
+        }
+    }
+    static COHERENT: raw::RTCIntersectContext = with(raw::RTCIntersectContextFlags::COHERENT);
+    static INCOHERENT: raw::RTCIntersectContext = with(raw::RTCIntersectContextFlags::INCOHERENT);
+    *match coherence {
+        Coherence::Coherent => &COHERENT,
+        Coherence::Incoherent => &INCOHERENT,
     }
 }
 
