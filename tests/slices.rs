@@ -93,8 +93,10 @@ fn cases(budget: Budget, threads: usize) -> [(&'static str, Render); 3] {
     ]
 }
 
-/// Two renders take turns in slices, slice k `until` the budget of k, and each is compared with itself in one go.
-fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) {
+/// Two renders take turns in slices, slice k `until` the budget of k, and each is compared with itself in one go. Tells in which cases all
+/// slices ended with a pass.
+fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) -> Vec<String> {
+    let mut only_whole_passes = Vec::new();
     for (case, (name, alone)) in cases(budget, 1).into_iter().enumerate() {
         let at_once = |seed| {
             let film = |samples| {
@@ -129,7 +131,6 @@ fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) {
                     within_a_pass |= state.film().unequal_samples().is_some();
                 }
             }
-            assert!(within_a_pass, "{what}: no slice ended within a pass");
             for (state, at_once) in states.iter_mut().zip(&at_once) {
                 assert_eq!(advance(render, state, spp(32)), Ended::Complete);
                 assert!(state.film() == &at_once[5], "{what}: 32 samples");
@@ -139,17 +140,23 @@ fn check_slices(budget: Budget, until: impl Fn(u32) -> Budget) {
                 assert_eq!(advance(render, state, spp(20)), Ended::Complete);
                 assert!(state.film() == before.film(), "{what}: it went on");
             }
+            if !within_a_pass {
+                only_whole_passes.push(what);
+            }
         }
     }
+    only_whole_passes
 }
 
 #[test]
 fn slices_by_rays_change_no_bit() {
-    check_slices(rays(1 << 40), |slice| rays(997 * u64::from(slice)));
+    let only_whole_passes = check_slices(rays(1 << 40), |slice| rays(997 * u64::from(slice)));
+    assert_eq!(only_whole_passes, [""; 0]);
 }
 
 #[test]
 fn slices_by_time_change_no_bit() {
+    // Where these end is the machine's affair.
     check_slices(OPEN, |slice| {
         Budget::Time(Duration::from_micros(500) * slice)
     });
