@@ -14,7 +14,7 @@
 
 use std::path::Path;
 
-use super::{Geometry, Placement, Triangles};
+use super::{Geometry, Placement};
 use crate::scene::error::SceneError;
 use crate::scene::load::Loader;
 use crate::scene::mesh::{self, MeshData};
@@ -40,7 +40,7 @@ pub(super) fn load(
         mesh.normals = None;
     }
     let smooth = !face_normals && mesh.normals.is_none();
-    Triangles::place_mesh(mesh, smooth, placement, object)
+    placement.mesh(mesh, smooth, object)
 }
 
 fn read(object: &Object, filename: &str, loader: &mut Loader) -> Result<MeshData, SceneError> {

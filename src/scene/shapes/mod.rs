@@ -14,6 +14,7 @@ mod lanes;
 mod mesh_file;
 mod mesh_sampling;
 mod parameters;
+mod placed_mesh;
 mod planes;
 mod rectangle;
 mod shape_group;
@@ -69,8 +70,8 @@ pub(super) fn load(object: &Object, loader: &mut Loader) -> Result<Geometry, Sce
     placement.check(object)?;
     let geometry = match object.plugin.as_str() {
         "obj" | "ply" | "serialized" => mesh_file::load(object, &placement, loader),
-        "rectangle" => Triangles::place(rectangle::rectangle(), &placement, object),
-        "cube" => Triangles::place(cube::cube(), &placement, object),
+        "rectangle" => placement.flat_sided(rectangle::rectangle(), object),
+        "cube" => placement.flat_sided(cube::cube(), object),
         "sphere" => Sphere::load(object, &placement).map(Geometry::Sphere),
         "disk" => Ok(Geometry::Disk(Disk::load(&placement))),
         "cylinder" => Cylinder::load(object, &placement).map(Geometry::Cylinder),

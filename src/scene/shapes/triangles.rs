@@ -3,21 +3,16 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
-use super::faces::{Faces, Reordered};
+use super::faces::Faces;
 use super::lanes::{CornerLanes, SurfaceLanes};
 use super::mesh_sampling::{MeshSampling, Parallelogram};
-use super::{
-    AttributesAt, Geometry, HitCoordinates, Placement, Plane, ShapeSample, SurfaceParameters,
-    SurfacePoint,
-};
+use super::{AttributesAt, HitCoordinates, Plane, ShapeSample, SurfaceParameters, SurfacePoint};
 use crate::embree::VertexBuffer;
 use crate::sampling::Frame;
-use crate::scene::error::SceneError;
-use crate::scene::mesh::pairing::{self, Corner, MOST_TRIANGLES};
-use crate::scene::mesh::{self, MeshAttribute, MeshData};
-use crate::scene::xml::Object;
+use crate::scene::mesh::MeshAttribute;
+use crate::scene::mesh::pairing::{self, Corner};
 
 /// A triangle mesh in world space. Its buffers are shared with the intersection layer, not copied.
 #[derive(Debug)]
@@ -53,7 +48,7 @@ pub enum TextureCoordinates {
 
 impl TextureCoordinates {
     /// Those of a mesh that has none of its own, whose triangles begin at these corners of theirs.
-    fn of_triangles(beginnings: &[Corner]) -> Self {
+    pub(super) fn of_triangles(beginnings: &[Corner]) -> Self {
         let turned = beginnings.iter().map(|&corner| pairing::place(corner));
         Self::OfTriangles(turned.collect())
     }
@@ -72,104 +67,21 @@ impl TextureCoordinates {
 }
 
 impl Triangles {
-    /// A flat-sided mesh in the world. Its normals follow the transform, even one that mirrors.
-    pub(super) fn place(
-        mut mesh: MeshData,
-        placement: &Placement,
-        object: &Object,
-    ) -> Result<Geometry, SceneError> {
-        if placement.to_world.determinant() < 0.0 {
-            mesh.triangles
-                .iter_mut()
-                .for_each(|triangle| triangle.reverse());
-        }
-        Self::place_mesh(mesh, false, placement, object)
-    }
-
-    /// A mesh in the world; `smooth` makes vertex normals for it there.
-    pub(super) fn place_mesh(
-        mut mesh: MeshData,
-        smooth: bool,
-        placement: &Placement,
-        object: &Object,
-    ) -> Result<Geometry, SceneError> {
-        for position in &mut mesh.positions {
-            let local = Vec3::from(*position).as_dvec3();
-            *position = placement.to_world.transform_point3(local).as_vec3().into();
-        }
-        if mesh
-            .positions
-            .iter()
-            .flatten()
-            .any(|coordinate| !coordinate.is_finite())
-        {
-            return Err(
-                object.parameter_error("to_world", "`to_world` moves vertices beyond all numbers")
-            );
-        }
-        let to_world = placement.normals();
-        let normals: Option<Vec<Vec3>> = match mesh.normals.take() {
-            Some(normals) => Some(
-                normals
-                    .into_iter()
-                    .map(|normal| {
-                        (to_world * DVec3::from(normal.map(f64::from)))
-                            .as_vec3()
-                            .normalize_or_zero()
-                    })
-                    .collect(),
-            ),
-            None if smooth => Some(
-                mesh::smooth_normals(&mesh.positions, &mesh.triangles)
-                    .into_iter()
-                    .map(Vec3::from)
-                    .collect(),
-            ),
-            None => None,
-        };
-        let normals = normals.filter(|normals| !are_flat(&mesh, normals));
-        if mesh.triangles.len() > MOST_TRIANGLES {
-            return Err(object.error(format!(
-                "this mesh has {} triangles, more than the {MOST_TRIANGLES} that can be numbered",
-                mesh.triangles.len()
-            )));
-        }
-        let Reordered { faces, beginnings } = Faces::of(&mesh.positions, &mesh.triangles);
-        let named = mesh.attributes.iter().map(|attribute| {
-            if attribute.is_of_faces {
-                attribute.reordered(
-                    beginnings
-                        .iter()
-                        .map(|&corner| pairing::triangle_of(corner)),
-                )
-            } else {
-                attribute.clone()
-            }
-        });
-        let attributes = TriangleAttributes {
-            named: named.collect(),
-            coordinates: match mesh.uvs.take() {
-                Some(uvs) => TextureCoordinates::OfVertices(uvs),
-                None => TextureCoordinates::of_triangles(&beginnings),
-            },
-            flip_normals: placement.flip_normals,
-        };
-        let vertices = Arc::new(match normals {
-            Some(normals) => {
-                let normals = normals.into_iter().map(Vec3::into);
-                VertexBuffer::with_normals(mesh.positions.into_iter().zip(normals))
-            }
-            None => VertexBuffer::new(mesh.positions),
-        });
+    /// Triangles in world space that say these things of themselves.
+    pub(super) fn new(
+        vertices: VertexBuffer,
+        faces: Faces,
+        attributes: TriangleAttributes,
+    ) -> Self {
         let areas = triangle_areas(&vertices, &faces).map(f64::from);
         let area = areas.sum::<f64>() as f32;
-        Ok(Geometry::Triangles(Self {
-            vertices,
+        Self {
+            vertices: Arc::new(vertices),
             faces,
             attributes,
             area,
             sampling: None,
-        }))
+        }
     }
 
     /// The planes of the triangles, if the mesh is shaded flat.
@@ -378,16 +290,5 @@ fn triangle_areas(vertices: &VertexBuffer, faces: &Faces) -> impl Iterator<Item 
     faces.iter().map(|triangle| {
         let [a, b, c] = triangle.map(|i| Vec3::from(vertices.position(i)));
         0.5 * (b - a).cross(c - a).length()
-    })
-}
-
-/// Whether vertex normals say no more than the triangles themselves.
-fn are_flat(mesh: &MeshData, normals: &[Vec3]) -> bool {
-    mesh.triangles.iter().all(|triangle| {
-        let [a, b, c] = triangle.map(|i| Vec3::from(mesh.positions[i as usize]));
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        triangle
-            .iter()
-            .all(|&i| normals[i as usize].dot(normal) > 1.0 - 1e-6)
     })
 }
