@@ -10,7 +10,7 @@ use cohort::render::{Render, Settings};
 use cohort::sampling::{SamplerKind, StreamKey};
 use cohort::scene::{LoadOptions, Scene};
 use cohort::spectrum::{Rgb, Spectral};
-use cohort::transport::{TileJob, TraceBatches, Tracer};
+use cohort::transport::{PathCounts, TileJob, TraceBatches, Tracer};
 use cohort::walk::{StrategyKind, StrategyOptions};
 
 /// Counts the allocations of this thread, but for those inside Embree: threads that made the mesh, and that of the test harness, put
@@ -95,9 +95,8 @@ fn job(pass: u32, knowledge: Option<&Knowledge>) -> TileJob<'_> {
             tile: 0,
             pass,
         },
-        first_sample: u64::from(pass) * 16,
-        samples: 16,
-        weight: 1.0,
+        counts: PathCounts::Even(16),
+        weight: 16.0,
         knowledge,
         learns: false,
         reliance: Reliance::ALL,

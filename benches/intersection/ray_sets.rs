@@ -9,7 +9,7 @@ use cohort::film::Film;
 use cohort::learning::Reliance;
 use cohort::sampling::StreamKey;
 use cohort::spectrum::Spectral;
-use cohort::transport::{RecordedRays, TileJob, Tracer};
+use cohort::transport::{PathCounts, RecordedRays, TileJob, Tracer};
 use cohort::{Render, Scene, Settings};
 
 use crate::calls::Query;
@@ -60,9 +60,8 @@ pub fn record(scene: &Arc<Scene>, stretches: usize) -> Result<Vec<RaySet>, Box<d
         };
         let job = TileJob {
             key,
-            first_sample: 0,
-            samples: SAMPLES,
-            weight: 1.0,
+            counts: PathCounts::Even(SAMPLES),
+            weight: f64::from(SAMPLES),
             knowledge: None,
             learns: false,
             reliance: Reliance::ALL,

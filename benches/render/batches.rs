@@ -10,7 +10,7 @@ use cohort::learning::Reliance;
 use cohort::sampling::StreamKey;
 use cohort::scene::ImageSize;
 use cohort::spectrum::{Rgb, Spectral};
-use cohort::transport::{Engine, TileJob, TraceBatches, Tracer};
+use cohort::transport::{Engine, PathCounts, TileJob, TraceBatches, Tracer};
 use cohort::{ColourMode, FilmSums, WavelengthCount};
 
 use super::effort::Effort;
@@ -74,9 +74,8 @@ impl BatchSize {
                 let tile = &mut film.tiles_mut()[index];
                 let job = TileJob {
                     key,
-                    first_sample: u64::from(pass * samples),
-                    samples,
-                    weight: 1.0,
+                    counts: PathCounts::Even(samples),
+                    weight: f64::from(samples),
                     knowledge: None,
                     learns: false,
                     reliance: Reliance::ALL,

@@ -36,6 +36,7 @@ pub fn run(arguments: &AccuracyArgs) -> Result<ExitCode, Box<dyn Error>> {
             options: arguments.strategy.options,
             sampler: arguments.strategy.sampler.unwrap_or(base.sampler),
             guiding: arguments.strategy.guiding.unwrap_or(base.guiding),
+            adaptive: arguments.strategy.adaptive.unwrap_or(base.adaptive),
             trial: arguments.strategy.trial.unwrap_or(base.trial),
             ..base
         };

@@ -39,6 +39,7 @@ pub fn run(arguments: &CompareArgs) -> Result<ExitCode, Box<dyn Error>> {
                 options: spec.options,
                 sampler: spec.sampler.unwrap_or(base.sampler),
                 guiding: spec.guiding.unwrap_or(base.guiding),
+                adaptive: spec.adaptive.unwrap_or(base.adaptive),
                 trial: spec.trial.unwrap_or(base.trial),
                 ..base.clone()
             }),

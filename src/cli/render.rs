@@ -73,6 +73,10 @@ pub struct RenderArgs {
     #[arg(long, value_name = "SWITCH", value_enum)]
     guiding: Option<Switch>,
 
+    /// Whether pixels in which one path leaves much error get more of them: a number of samples is then that of all in the mean
+    #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
+    adaptive: Switch,
+
     /// Whether what was learned is tried against doing without, and left aside where it does not pay
     #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
     trial: Switch,
@@ -236,6 +240,7 @@ impl RenderArgs {
             },
             sampler: self.sampler.unwrap_or(sampler),
             guiding: self.guiding.unwrap_or(guiding).is_on(),
+            adaptive: self.adaptive.is_on(),
             trial: self.trial.is_on(),
             direct_light: match self.direct {
                 Direct::NextEvent => DirectLight::NextEvent,

@@ -85,6 +85,10 @@ pub struct StudyArgs {
     #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
     guiding: Switch,
 
+    /// Whether pixels in which one path leaves much error get more of them
+    #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
+    adaptive: Switch,
+
     /// Whether what was learned is tried against doing without, and left aside where it does not pay
     #[arg(long, value_name = "SWITCH", value_enum, default_value_t = Switch::Off)]
     trial: Switch,
@@ -147,6 +151,7 @@ impl StudyArgs {
             },
             sampler: self.sampler,
             guiding: self.guiding.is_on(),
+            adaptive: self.adaptive.is_on(),
             trial: self.trial.is_on(),
             ..EntrySettings::default()
         };

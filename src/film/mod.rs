@@ -3,6 +3,7 @@
 mod exr_file;
 mod filter;
 mod image;
+mod neighbourhood;
 mod pixels;
 mod png_file;
 mod second_moments;
@@ -14,6 +15,7 @@ mod whole_file;
 pub use exr_file::{ExrMoments, ExrOptions, read_exr, read_exr_variance, write_exr};
 pub use filter::{FilterSample, FilterSampler, PixelFilter};
 pub use image::{FilmFileError, Image};
+pub use neighbourhood::neighbourhood_sums;
 pub use pixels::TilePixels;
 pub use png_file::{srgb_bytes, write_png, write_rgb8};
 pub use second_moments::SecondMoments;

@@ -1,8 +1,11 @@
 //! What is known of the image: how bright its pixels are, and what variance costs there.
 
+use std::ops::AddAssign;
+
 use serde::{Deserialize, Serialize};
 
 use super::PixelObservation;
+use crate::film::neighbourhood_sums;
 use crate::scene::ImageSize;
 
 /// Pixels on each side of one with which it is averaged.
@@ -30,33 +33,15 @@ pub struct PixelKnowledge {
 impl PixelKnowledge {
     /// What the observations of all pixels of a film of `size` say.
     pub(super) fn new(pixels: &[PixelObservation], size: ImageSize) -> Self {
-        let [width, height] = [size.width as usize, size.height as usize];
-        if pixels.len() != width * height {
+        if pixels.len() != size.pixels() {
             return Self::default();
         }
-        let mut rows = vec![Sum::default(); pixels.len()];
-        let mut both = rows.clone();
-        for (i, row) in rows.iter_mut().enumerate() {
-            let (x, start) = (i % width, i / width * width);
-            let (first, last) = (x.saturating_sub(REACH), (x + REACH).min(width - 1));
-            for pixel in &pixels[start + first..=start + last] {
-                row.add(&Sum::of(pixel));
-            }
-        }
-        for (i, sum) in both.iter_mut().enumerate() {
-            let (x, y) = (i % width, i / width);
-            let (first, last) = (y.saturating_sub(REACH), (y + REACH).min(height - 1));
-            (first..=last).for_each(|y| sum.add(&rows[y * width + x]));
-        }
-        let all = rows
-            .iter()
-            .zip(pixels)
-            .fold(Sum::default(), |mut all, (_, pixel)| {
-                all.add(&Sum::of(pixel));
-                all
-            });
+        let sums: Vec<Sum> = pixels.iter().map(Sum::of).collect();
+        let near = neighbourhood_sums(&sums, size, REACH);
+        let mut all = Sum::default();
+        sums.into_iter().for_each(|sum| all += sum);
         let darkest = DARKEST * all.mean();
-        let brightness: Vec<f32> = both.iter().map(|sum| sum.mean().max(darkest)).collect();
+        let brightness: Vec<f32> = near.iter().map(|sum| sum.mean().max(darkest)).collect();
         let mut relative = Vec::with_capacity(pixels.len());
         let mut absolute = Vec::with_capacity(pixels.len());
         for (pixel, &brightness) in pixels.iter().zip(&brightness) {
@@ -131,17 +116,19 @@ impl Sum {
         }
     }
 
-    fn add(&mut self, other: &Self) {
-        self.radiance += other.radiance;
-        self.paths += other.paths;
-    }
-
     fn mean(&self) -> f32 {
         if self.paths > 0.0 {
             (self.radiance / self.paths) as f32
         } else {
             0.0
         }
+    }
+}
+
+impl AddAssign for Sum {
+    fn add_assign(&mut self, other: Self) {
+        self.radiance += other.radiance;
+        self.paths += other.paths;
     }
 }
 

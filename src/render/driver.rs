@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
+use super::allocation::Allocation;
 use super::trial::Trial;
 use super::watch::{Watch, unpoisoned};
 use super::{Budget, Ended, Observer, Outcome, RenderState, Schedule, Settings, StopFlag, memory};
@@ -15,7 +16,8 @@ use crate::learning::{Experience, Gathering, Knowledge, Reliance};
 use crate::sampling::StreamKey;
 use crate::scene::{Emitter, Scene};
 use crate::transport::{
-    Accelerator, AcceleratorOptions, DirectLight, Engine, TileJob, TraceBatches, TransportSettings,
+    Accelerator, AcceleratorOptions, DirectLight, Engine, PathCounts, TileJob, TraceBatches,
+    TransportSettings,
 };
 use crate::walk::FixedDepth;
 
@@ -187,17 +189,20 @@ impl Render {
         let knowledge = self
             .learns()
             .then(|| Knowledge::nothing(self.engine.bounds(), size));
-        RenderState::new(film, knowledge, seed)
+        let allocation = self.settings.adaptive.then(|| Allocation::new(&film));
+        RenderState::new(film, knowledge, allocation, seed)
     }
 
     /// Whether [`advance`](Self::advance) can go on from `state`, which may come from a file: whether its image has the
-    /// size and the sums of this render's, and whether both learn. That scene and settings are the same is for the caller to know.
+    /// size and the sums of this render's, and whether both learn and adapt. That scene and settings are the same is for the caller to know.
     pub fn fits(&self, state: &RenderState) -> bool {
         let size = self.engine.scene().film.crop.size;
         let (sums, moments) = (self.settings.film_sums, self.asks_for_moments());
         state.film.is_like_new(size, sums, moments)
             && state.pass.done.len() == state.film.tiles().len()
             && state.knowledge.is_some() == self.learns()
+            && state.allocation.is_some() == self.settings.adaptive
+            && (state.allocation.iter()).all(|allocation| allocation.fits(&state.film))
     }
 
     /// Goes on with a render until it has used up `until`, which is counted from its very start and over all pixels, or
@@ -244,19 +249,29 @@ impl Render {
                         break ended;
                     }
                 }
+                let is_new = !state.pass.is_under_way();
                 if !state.pass.plan(schedule, until) {
                     break Ended::Complete;
                 }
-                let learns = state.knowledge.is_some() && schedule.teaches(state.pass.before);
-                let weight = schedule.weight(state.pass.before);
+                let teaches = schedule.teaches(state.pass.before);
+                let learns = state.knowledge.is_some() && teaches;
+                if let Some(allocation) = state.allocation.as_mut().filter(|_| is_new) {
+                    let objective = self.engine.strategy().objective();
+                    let before = (!learns).then_some(state.pass.before);
+                    allocation.plan(&state.film, objective, before, state.pass.samples);
+                }
+                let samples = f64::from(state.pass.samples);
+                let weight = schedule.weight(state.pass.before) * samples;
                 self.trace_pass(state, learns, weight, &watch);
-                if state.pass.finish()
-                    && learns
-                    && let Some(knowledge) = &mut state.knowledge
-                {
-                    knowledge.learn();
-                    if !schedule.teaches(state.pass.before) {
-                        knowledge.conclude();
+                if state.pass.finish() {
+                    if let Some(allocation) = &mut state.allocation {
+                        allocation.finish(weight, state.pass.samples);
+                    }
+                    if learns && let Some(knowledge) = &mut state.knowledge {
+                        knowledge.learn();
+                        if !schedule.teaches(state.pass.before) {
+                            knowledge.conclude();
+                        }
                     }
                 }
                 if let Some(ended) = watch.ended() {
@@ -269,7 +284,7 @@ impl Render {
         ended
     }
 
-    /// Traces what is left of a pass. Passes follow each other, so that every pixel adds up its passes in the same
+    /// Traces what is left of a pass, in which the samples of a pixel have this `weight` together. Passes follow each other, so that every pixel adds up its passes in the same
     /// order. Where the render `learns` from it, tiles are begun in their order, so that few wait for those before them.
     fn trace_pass(&self, state: &mut RenderState, learns: bool, weight: f64, watch: &Watch) {
         let pass = &mut state.pass;
@@ -285,11 +300,16 @@ impl Render {
         let tiles = state.film.tiles_mut().iter_mut().zip(&mut pass.done);
         let missing = tiles.enumerate().filter(|(_, (_, done))| !**done);
         let missing = Mutex::new(missing.peekable());
+        let allocation = state.allocation.as_ref();
+        let counts = |tile: usize| match allocation {
+            Some(allocation) => allocation.counts(tile, pass.samples),
+            None => PathCounts::Even(pass.samples),
+        };
         rayon::broadcast(|context| {
             let tracer = &mut **unpoisoned(&self.tracers[context.index()]);
             loop {
-                let next =
-                    unpoisoned(&missing).next_if(|(_, (tile, _))| watch.allows(tile, pass.samples));
+                let next = unpoisoned(&missing)
+                    .next_if(|(index, (tile, _))| watch.allows(tile, counts(*index)));
                 let Some((index, (tile, done))) = next else {
                     break;
                 };
@@ -300,8 +320,7 @@ impl Render {
                 };
                 let job = TileJob {
                     key,
-                    first_sample: pass.before,
-                    samples: pass.samples,
+                    counts: counts(index),
                     weight,
                     knowledge,
                     learns,

@@ -78,6 +78,10 @@ pub fn what_is_computed(render: &Render) -> Vec<(String, String)> {
         if settings.guiding { "on" } else { "off" }.to_owned(),
     );
     add(
+        "adaptive",
+        if settings.adaptive { "on" } else { "off" }.to_owned(),
+    );
+    add(
         "trial",
         if settings.trial { "on" } else { "off" }.to_owned(),
     );

@@ -1,5 +1,6 @@
 //! The driver: from a scene and settings to a film, within a budget, in one go or in slices.
 
+mod allocation;
 mod driver;
 mod memory;
 mod metadata;

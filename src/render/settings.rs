@@ -13,7 +13,7 @@ use crate::walk::{Roulette, Strategy};
 /// When a render is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Budget {
-    /// When every pixel has so many camera paths.
+    /// When every pixel has so many camera paths; in the mean over all pixels, where the render is adaptive.
     SamplesPerPixel(NonZeroU32),
     /// After so much wall-clock time, counted from when the scene is loaded and its acceleration structure is built.
     Time(Duration),
@@ -91,6 +91,8 @@ pub struct Settings {
     pub sampler: SamplerKind,
     /// Whether directions are guided by what was learned of where light comes from.
     pub guiding: bool,
+    /// Whether pixels in which one path leaves much error get more of them.
+    pub adaptive: bool,
     /// Whether what was learned is tried against doing without, and left aside where it does not pay.
     pub trial: bool,
     /// How direct light is found.
@@ -116,6 +118,7 @@ impl Default for Settings {
             film_sums: FilmSums::default(),
             sampler: SamplerKind::default(),
             guiding: false,
+            adaptive: false,
             trial: false,
             direct_light: DirectLight::default(),
             max_depth: None,

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use super::allocation::Allocation;
 use super::trial::Finding;
 use super::{Budget, Schedule};
 use crate::film::Film;
@@ -20,6 +21,8 @@ pub struct RenderState {
     pub(super) film: Film,
     /// Of a render that learns.
     pub(super) knowledge: Option<Knowledge>,
+    /// Of a render that is adaptive.
+    pub(super) allocation: Option<Allocation>,
     /// What was found by trying it so far.
     pub(super) findings: Vec<Option<Finding>>,
     /// On which of it the render relies, once it has tried.
@@ -34,9 +37,9 @@ pub struct RenderState {
 pub(super) struct Pass {
     /// Its number, from 0.
     pub index: u32,
-    /// Samples per pixel of all passes before it.
+    /// Samples per pixel of all passes before it, in the mean over all pixels.
     pub before: u64,
-    /// Samples per pixel of this one, once a tile is done.
+    /// Samples per pixel of this one, likewise, once a tile is done.
     pub samples: u32,
     /// Which tiles are done, in the order of the film.
     pub done: Vec<bool>,
@@ -86,7 +89,12 @@ pub struct Outcome {
 
 impl RenderState {
     /// A render onto `film` that has not traced anything.
-    pub(super) fn new(film: Film, knowledge: Option<Knowledge>, seed: u64) -> Self {
+    pub(super) fn new(
+        film: Film,
+        knowledge: Option<Knowledge>,
+        allocation: Option<Allocation>,
+        seed: u64,
+    ) -> Self {
         Self {
             seed,
             pass: Pass {
@@ -97,6 +105,7 @@ impl RenderState {
             },
             film,
             knowledge,
+            allocation,
             findings: Vec::new(),
             reliance: None,
             statistics: TraceStatistics::default(),

@@ -13,7 +13,7 @@ use super::{Budget, RenderState};
 use crate::film::{Film, FilmSums, FilmTile, PixelStatistics};
 use crate::learning::{Knowledge, Reliance};
 use crate::sampling::StreamKey;
-use crate::transport::{Engine, TileJob, TraceBatches};
+use crate::transport::{Engine, PathCounts, TileJob, TraceBatches};
 use crate::walk::Objective;
 
 /// Camera paths of a pixel that are traced together: as many as make a sampler's points even.
@@ -173,7 +173,7 @@ impl Aside<'_> {
     fn render(&self, tracer: &mut dyn TraceBatches, watch: &Watch) -> Option<Finding> {
         let mut tile = self.film.tiles()[self.tile].without_samples(FilmSums::Double);
         let mut rays = 0;
-        if !watch.allows(&tile, UNITS * SAMPLES) {
+        if !watch.allows(&tile, PathCounts::Even(UNITS * SAMPLES)) {
             return None;
         }
         for unit in 0..UNITS {
@@ -184,9 +184,8 @@ impl Aside<'_> {
                     tile: self.tile as u32,
                     pass: u32::MAX - unit,
                 },
-                first_sample: 0,
-                samples: SAMPLES,
-                weight: 1.0,
+                counts: PathCounts::Even(SAMPLES),
+                weight: f64::from(SAMPLES),
                 knowledge: Some(self.knowledge),
                 learns: false,
                 reliance: self.reliance,

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::{Budget, Ended, Observer, Progress, RenderState, StopFlag};
 use crate::embree::flush_denormals_to_zero;
 use crate::film::FilmTile;
-use crate::transport::{Engine, TileJob, TraceBatches, TraceStatistics};
+use crate::transport::{Engine, PathCounts, TileJob, TraceBatches, TraceStatistics};
 
 /// How often an observer hears of the progress.
 const OBSERVATION_INTERVAL: Duration = Duration::from_millis(100);
@@ -69,9 +69,9 @@ impl<'a> Watch<'a> {
         self.before + self.start.elapsed()
     }
 
-    /// Whether `samples` more of every pixel of `tile` should be traced. Once they should not, nothing more should be.
-    pub fn allows(&self, tile: &FilmTile, samples: u32) -> bool {
-        !self.should_stop(tile.pixels.count() as u64 * u64::from(samples))
+    /// Whether so many more camera paths of every pixel of `tile` should be traced. Once they should not, nothing more should be.
+    pub fn allows(&self, tile: &FilmTile, counts: PathCounts<'_>) -> bool {
+        !self.should_stop(counts.of_pixels(0..tile.pixels.count()))
     }
 
     /// Traces a tile's samples of a pass.
@@ -109,7 +109,7 @@ impl<'a> Watch<'a> {
         tile: &mut FilmTile,
         tracer: &mut dyn TraceBatches,
     ) -> TraceStatistics {
-        let paths = tile.pixels.count() as u64 * u64::from(job.samples);
+        let paths = job.counts.of_pixels(0..tile.pixels.count());
         let _flushed = flush_denormals_to_zero();
         let start = Instant::now();
         tracer.trace(engine, job, tile);

@@ -11,14 +11,20 @@ pub struct Ranks {
 }
 
 impl Ranks {
-    /// The point of the next particle, which descends from camera path number `path` of the batch; each pixel has `samples` of these, and one of the
-    /// `sequences`.
+    /// The point of the next particle, which descends from camera path number `path` of the batch. `pixels` has the pixel of every path, and of every
+    /// pixel `ends` has the first path of the next one, and `sequences` what it draws from.
     #[inline(always)]
-    pub fn next(&mut self, path: u32, samples: u32, sequences: &[PixelSequences]) -> SequencePoint {
+    pub fn next(
+        &mut self,
+        path: u32,
+        pixels: &[u32],
+        ends: &[u32],
+        sequences: &[PixelSequences],
+    ) -> SequencePoint {
         if path >= self.end {
-            let pixel = path / samples;
-            self.end = (pixel + 1) * samples;
-            self.next = sequences[pixel as usize].first_rank();
+            let pixel = pixels[path as usize] as usize;
+            self.end = ends[pixel];
+            self.next = sequences[pixel].first_rank();
         }
         let point = self.next;
         self.next = point.successor();

@@ -143,22 +143,20 @@ pub struct Sampler {
     /// What the sequences of a pixel depend on beside it and the lessons: the seed, in two words, and the tile.
     key: [u32; 3],
     lessons: u32,
-    before: u64,
 }
 
 impl Sampler {
-    /// The numbers of the batch of `key`, where each pixel has had `before` samples in all passes before.
+    /// The numbers of the batch of `key`.
     ///
     /// Passes go on with the same sequences, until there is another of the `lessons` that the render learns from what it has traced: what was learned
     /// must not depend on numbers with which it is used. Only what a camera path starts with goes on through all lessons, for nothing that was learned
     /// has a say in it: whatever it is, the estimate from there on is right in the mean.
-    pub fn new(kind: SamplerKind, key: StreamKey, before: u64, lessons: u32) -> Self {
+    pub fn new(kind: SamplerKind, key: StreamKey, lessons: u32) -> Self {
         Self {
             kind,
             stream: RandomStream::new(key),
             key: [key.seed as u32, (key.seed >> 32) as u32, key.tile],
             lessons,
-            before,
         }
     }
 
@@ -179,14 +177,14 @@ impl Sampler {
         (self.kind == SamplerKind::ArrayQmc).then(Ranks::default)
     }
 
-    /// The sequences of pixel number `pixel` of the batch's tile.
-    pub fn sequences(&self, pixel: u32) -> PixelSequences {
+    /// The sequences of pixel number `pixel` of the batch's tile, which has had `before` samples in all passes before.
+    pub fn sequences(&self, pixel: u32, before: u64) -> PixelSequences {
         let [seed_low, seed_high, tile] = self.key;
         let after = |lessons| scramble([seed_low, seed_high, tile, lessons], pixel);
         PixelSequences {
             camera: after(0),
             path: after(self.lessons),
-            before: self.before,
+            before,
         }
     }
 
@@ -316,9 +314,9 @@ mod tests {
 
     #[test]
     fn independent_numbers_are_the_streams() {
-        let mut sampler = Sampler::new(SamplerKind::Independent, KEY, 0, 0);
+        let mut sampler = Sampler::new(SamplerKind::Independent, KEY, 0);
         let mut stream = RandomStream::new(KEY);
-        let point = sampler.sequences(4).camera_point(5);
+        let point = sampler.sequences(4, 0).camera_point(5);
         let drawn: [f32; 3] = numbers(&mut sampler, point, Use::Camera);
         assert_eq!(drawn, [(); 3].map(|()| stream.uniform()));
         assert!(sampler.decisions(&[point]).is_none() && sampler.ranks().is_none());
@@ -329,8 +327,8 @@ mod tests {
     #[test]
     fn uses_do_not_share_dimensions() {
         for kind in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
-            let mut sampler = Sampler::new(kind, KEY, 5, 0);
-            let point = sampler.sequences(4).camera_point(0);
+            let mut sampler = Sampler::new(kind, KEY, 0);
+            let point = sampler.sequences(4, 5).camera_point(0);
             let mut all: Vec<f32> = Vec::new();
             for what in [
                 Use::Camera,
@@ -362,8 +360,8 @@ mod tests {
     /// The bits that a coordinate does not have are random: without them, what is less probable than 2^-23 could not happen.
     #[test]
     fn decisions_have_32_random_bits() {
-        let mut sampler = Sampler::new(SamplerKind::Sobol, KEY, 0, 0);
-        let point = sampler.sequences(4).path_point(5);
+        let mut sampler = Sampler::new(SamplerKind::Sobol, KEY, 0);
+        let point = sampler.sequences(4, 0).path_point(5);
         let drawn = [(); 4096].map(|()| decide(&mut sampler, point, 0));
         let low: std::collections::BTreeSet<u32> = drawn.iter().map(|bits| bits & 511).collect();
         assert!(low.len() > 500, "{}", low.len());
@@ -376,9 +374,10 @@ mod tests {
         let mut parts = [0; 16];
         for pass in 0..2 {
             let key = StreamKey { pass, ..KEY };
-            let mut sampler = Sampler::new(SamplerKind::Sobol, key, 8 * u64::from(pass), 0);
+            let mut sampler = Sampler::new(SamplerKind::Sobol, key, 0);
+            let before = 8 * u64::from(pass);
             for sample in 0..8 {
-                let point = sampler.sequences(0).path_point(sample);
+                let point = sampler.sequences(0, before).path_point(sample);
                 let [u] = numbers(&mut sampler, point, Use::Direction(3));
                 parts[(u * 16.0) as usize] += 1;
             }
@@ -391,11 +390,12 @@ mod tests {
     fn every_lesson_begins_other_sequences_but_for_the_camera() {
         for kind in [SamplerKind::Sobol, SamplerKind::ArrayQmc] {
             let drawn = [0, 1, 2].map(|lessons| {
-                let mut sampler = Sampler::new(kind, KEY, 5, lessons);
-                let camera_point = sampler.sequences(4).camera_point(0);
+                let mut sampler = Sampler::new(kind, KEY, lessons);
+                let sequences = sampler.sequences(4, 5);
+                let camera_point = sequences.camera_point(0);
                 let point = match sampler.ranks() {
-                    Some(mut ranks) => ranks.next(0, 1, &[sampler.sequences(4)]),
-                    None => sampler.sequences(4).path_point(0),
+                    Some(mut ranks) => ranks.next(0, &[0], &[1], &[sequences]),
+                    None => sequences.path_point(0),
                 };
                 let [film] = numbers::<1>(&mut sampler, camera_point, Use::Camera);
                 let [lens] = numbers::<1>(&mut sampler, camera_point, Use::Lens);
@@ -419,10 +419,11 @@ mod tests {
     fn ranks_go_on_from_pass_to_pass() {
         // Of particles that descend from these paths, four of which belong to each of two pixels.
         let ranks = |before, paths: &[u32]| {
-            let sampler = Sampler::new(SamplerKind::ArrayQmc, KEY, before, 0);
+            let sampler = Sampler::new(SamplerKind::ArrayQmc, KEY, 0);
             let mut ranks = sampler.ranks().expect("it sorts");
-            let sequences = [7, 8].map(|pixel| sampler.sequences(pixel));
-            let next = |&path| ranks.next(path, 4, &sequences);
+            let sequences = [7, 8].map(|pixel| sampler.sequences(pixel, before));
+            let pixels = [0, 0, 0, 0, 1, 1, 1, 1];
+            let next = |&path| ranks.next(path, &pixels, &[4, 8], &sequences);
             paths.iter().map(next).collect()
         };
         let whole: Vec<SequencePoint> = ranks(0, &[3, 0, 1, 3, 4, 7]);

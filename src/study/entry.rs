@@ -26,6 +26,8 @@ pub struct EntrySettings {
     pub sampler: SamplerKind,
     /// Whether directions are guided by what was learned.
     pub guiding: bool,
+    /// Whether pixels in which one path leaves much error get more of them.
+    pub adaptive: bool,
     /// Whether what was learned is tried against doing without.
     pub trial: bool,
     /// How direct light is found.
@@ -50,6 +52,7 @@ impl Default for EntrySettings {
             colour: settings.colour,
             sampler: settings.sampler,
             guiding: settings.guiding,
+            adaptive: settings.adaptive,
             trial: settings.trial,
             direct_light: settings.direct_light,
             max_depth: settings.max_depth,
@@ -80,6 +83,7 @@ impl EntrySettings {
             colour: self.colour,
             sampler: self.sampler,
             guiding: self.guiding,
+            adaptive: self.adaptive,
             trial: self.trial,
             direct_light: self.direct_light,
             max_depth: self.max_depth,
@@ -104,6 +108,8 @@ pub struct StrategySpec {
     pub sampler: Option<SamplerKind>,
     /// Whether its directions are to be guided, if that is not as with the others.
     pub guiding: Option<bool>,
+    /// Whether pixels with much error are to get more paths, likewise.
+    pub adaptive: Option<bool>,
     /// Whether what it learns is to be tried, likewise.
     pub trial: Option<bool>,
 }
@@ -134,7 +140,7 @@ pub enum SpecError {
     },
     /// A setting that no strategy has.
     #[error(
-        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, rule, objective, n-max, population, counts, sampler, guiding and trial"
+        "no strategy has a setting `{0}`; there are threshold, termination, from-depth, rule, objective, n-max, population, counts, sampler, guiding, adaptive and trial"
     )]
     Unknown(String),
 }
@@ -148,6 +154,7 @@ impl FromStr for StrategySpec {
         let mut options = StrategyOptions::default();
         let mut sampler = None;
         let mut guiding = None;
+        let mut adaptive = None;
         let mut trial = None;
         for part in parts {
             let (name, value) = part
@@ -163,6 +170,7 @@ impl FromStr for StrategySpec {
                 "population" => options.population = Some(value.parse()?),
                 "sampler" => sampler = Some(value.parse()?),
                 "guiding" => guiding = Some(on_or_off("guiding", value)?),
+                "adaptive" => adaptive = Some(on_or_off("adaptive", value)?),
                 "trial" => trial = Some(on_or_off("trial", value)?),
                 "counts" => options.counts = Some(value.parse()?),
                 _ => return Err(SpecError::Unknown(name.to_owned())),
@@ -175,6 +183,7 @@ impl FromStr for StrategySpec {
             options,
             sampler,
             guiding,
+            adaptive,
             trial,
         })
     }

@@ -7,7 +7,7 @@
 use glam::Vec3;
 use multiversion::multiversion;
 
-use super::batch::Segments;
+use super::batch::{CameraPaths, Segments};
 use crate::embree::INVALID_GEOMETRY;
 use crate::room::{make_room, resize};
 use crate::sampling::Frame;
@@ -43,8 +43,8 @@ impl<C: Colour> Default for Arrangement<C> {
 }
 
 impl<C: Colour> Arrangement<C> {
-    /// Sorts the segments of each pixel, of which there are `samples` camera paths, by what they have hit.
-    pub fn arrange(&mut self, samples: u32, segments: &mut Segments<C>) {
+    /// Sorts the segments of each pixel by what they have hit.
+    pub fn arrange(&mut self, paths: &CameraPaths<C>, segments: &mut Segments<C>) {
         let Self {
             ends,
             names,
@@ -57,7 +57,7 @@ impl<C: Colour> Arrangement<C> {
         resize(names, count);
         look(segments, ends, names);
         make_room(order, count);
-        sort(&segments.path, samples, ends, names, keys, order);
+        sort(paths, &segments.path, ends, names, keys, order);
         spare.gather(segments, order);
         std::mem::swap(spare, segments);
     }
@@ -95,24 +95,24 @@ fn look<C: Colour>(segments: &Segments<C>, ends: &mut [Vec<f32>; 3], names: &mut
     }
 }
 
-/// Appends the numbers of all particles to `order`, which is empty: those of each pixel, of which there are `samples` camera paths, by `names`, to which their
-/// places are added.
+/// Appends the numbers of all particles to `order`, which is empty: those of each pixel by `names`, to which their places are added. `descent` has the
+/// camera path of every particle.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn sort(
-    paths: &[u32],
-    samples: u32,
+fn sort<C: Colour>(
+    paths: &CameraPaths<C>,
+    descent: &[u32],
     ends: &[Vec<f32>; 3],
     names: &mut [u32],
     keys: &mut Vec<u64>,
     order: &mut Vec<u32>,
 ) {
     let mut first = 0;
-    while let Some(path) = paths.get(first) {
-        let next_pixel = (path / samples + 1) * samples;
-        let particles = paths[first..].iter();
+    while let Some(path) = descent.get(first) {
+        let next_pixel = paths.ends[paths.pixel(*path) as usize];
+        let particles = descent[first..].iter();
         let count = particles.take_while(|&&path| path < next_pixel).count();
         let pixel = first..first + count;
         if count == 1 {
@@ -202,7 +202,9 @@ fn spread(bits: u32) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::path_counts::PathCounts;
     use super::*;
+    use crate::spectrum::Rgb;
 
     #[test]
     fn bits_are_spread() {
@@ -215,7 +217,9 @@ mod tests {
     #[test]
     fn neighbours_in_space_are_neighbours_in_the_order() {
         // Of three pixels, the first and the last have one particle. In the other, the fifth faces another way, the sixth has left the scene.
-        let paths = [3, 4, 5, 5, 7, 4, 6, 7, 8];
+        let mut paths = CameraPaths::<Rgb>::new();
+        paths.restart(0..3, PathCounts::Even(4));
+        let descent = [3, 4, 5, 5, 7, 4, 6, 7, 8];
         let ends = [
             vec![9.0, 0.0, 1.0, 0.49, 0.51, 0.1, f32::NAN, 0.9, 0.0],
             vec![9.0, 0.0, 1.0, 0.49, 0.1, 0.1, f32::NAN, 0.9, 0.0],
@@ -223,7 +227,7 @@ mod tests {
         ];
         let mut names = [0, 2, 2, 2, 2, 1, LEFT, 2, 0].map(|class| class << (3 * PLACE_BITS));
         let (mut keys, mut order) = (Vec::new(), Vec::new());
-        sort(&paths, 4, &ends, &mut names, &mut keys, &mut order);
+        sort(&paths, &descent, &ends, &mut names, &mut keys, &mut order);
         assert_eq!(order, [0, 5, 1, 3, 4, 7, 2, 6, 8]);
     }
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::lineage::Birth;
+use super::path_counts::PathCounts;
 use super::variant::{Scattering, Variant};
 use crate::embree::{Hits, Rays};
 use crate::film::FilmTile;
@@ -18,8 +19,10 @@ use crate::spectrum::Colour;
 pub(super) struct CameraPaths<C: Colour> {
     /// Which pixels of the tile they belong to.
     pub pixels: Range<u32>,
-    /// How many belong to each of those.
-    pub samples: u32,
+    /// The pixel to which each belongs: its number among those of the batch.
+    pub pixel: Vec<u32>,
+    /// Of each pixel, the first path of the next one.
+    pub ends: Vec<u32>,
     /// The sequences of each of those. Empty where random numbers are independent.
     pub sequences: Vec<PixelSequences>,
     /// How bright each of those is, as far as that was learned.
@@ -138,7 +141,8 @@ impl<C: Colour> CameraPaths<C> {
     pub fn new() -> Self {
         Self {
             pixels: 0..0,
-            samples: 1,
+            pixel: Vec::new(),
+            ends: Vec::new(),
             sequences: Vec::new(),
             brightness: Vec::new(),
             wavelengths: Vec::new(),
@@ -151,11 +155,18 @@ impl<C: Colour> CameraPaths<C> {
         }
     }
 
-    /// Empties the paths and makes room for `samples` of each of the `pixels`; returns how many that are.
-    pub fn restart(&mut self, pixels: Range<u32>, samples: u32) -> usize {
-        let count = pixels.len() * samples as usize;
+    /// Empties the paths and makes room for those that each of the `pixels` gets; returns how many that are.
+    pub fn restart(&mut self, pixels: Range<u32>, counts: PathCounts<'_>) -> usize {
+        let range = pixels.start as usize..pixels.end as usize;
+        let count = counts.of_pixels(range.clone()) as usize;
         self.pixels = pixels;
-        self.samples = samples;
+        make_room(&mut self.pixel, count);
+        make_room(&mut self.ends, range.len());
+        for (number, index) in (0..).zip(range) {
+            let end = self.pixel.len() + counts.of_pixel(index) as usize;
+            self.pixel.resize(end, number);
+            self.ends.push(end as u32);
+        }
         make_room(&mut self.wavelengths, count);
         make_room(&mut self.wavelength_draw, count);
         make_room(&mut self.radiance, count);
@@ -163,11 +174,14 @@ impl<C: Colour> CameraPaths<C> {
         count
     }
 
-    /// Finds out which sequences the pixels have.
-    pub fn find_sequences(&mut self, sampler: &Sampler) {
+    /// Finds out which sequences the pixels have, which are those of `tile`: they go on from the samples that it has.
+    pub fn find_sequences(&mut self, sampler: &Sampler, tile: &FilmTile) {
         make_room(&mut self.sequences, self.pixels.len());
         if sampler.has_sequences() {
-            let sequences = self.pixels.clone().map(|pixel| sampler.sequences(pixel));
+            let sequences = self.pixels.clone().map(|pixel| {
+                let before = tile.pixels.get(pixel as usize).samples;
+                sampler.sequences(pixel, before)
+            });
             self.sequences.extend(sequences);
         }
     }
@@ -185,13 +199,20 @@ impl<C: Colour> CameraPaths<C> {
     /// The point of the next of the particles that are numbered by `ranks`, which descends from a path.
     #[inline(always)]
     pub fn rank(&self, path: u32, ranks: &mut Ranks) -> SequencePoint {
-        ranks.next(path, self.samples, &self.sequences)
+        ranks.next(path, &self.pixel, &self.ends, &self.sequences)
+    }
+
+    /// How many paths belong to pixel number `pixel` of the batch.
+    #[inline(always)]
+    pub fn count(&self, pixel: usize) -> u32 {
+        let first = pixel.checked_sub(1).map_or(0, |before| self.ends[before]);
+        self.ends[pixel] - first
     }
 
     /// The pixel to which a path belongs: its number among those of the batch.
     #[inline(always)]
     pub fn pixel(&self, path: u32) -> u32 {
-        path / self.samples
+        self.pixel[path as usize]
     }
 }
 

@@ -15,7 +15,7 @@ use crate::sampling::{Sampler, SequencePoint, SolidAnglePdf, Use};
 use crate::scene::{CameraRayLanes, Refraction};
 use crate::spectrum::{Colour, SpectrumArithmetic};
 
-/// Starts `job.samples` paths for each of the `pixels` of the tile, pixel by pixel.
+/// Starts the paths of the `pixels` of the tile, pixel by pixel: as many of each as `job.counts` says.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -30,8 +30,8 @@ pub(super) fn start<C: Colour, V: Variant>(
     segments: &mut Segments<C>,
 ) {
     let has_lens = engine.camera.has_lens();
-    let count = paths.restart(pixels.clone(), job.samples);
-    paths.find_sequences(sampler);
+    let count = paths.restart(pixels.clone(), job.counts);
+    paths.find_sequences(sampler, tile);
     let carries_points = carries_points::<V>(sampler);
     segments.restart(0, count);
     let mut points = [SequencePoint::default(); CHUNK];
@@ -52,7 +52,7 @@ pub(super) fn start<C: Colour, V: Variant>(
                 if carries_points {
                     segments.point.push(sequences.path_point(at.sample));
                 }
-                at.advance(job.samples);
+                at.advance(&paths.ends);
             }
         }
         if C::RANDOM_NUMBERS > 0 {
@@ -75,7 +75,7 @@ pub(super) fn start<C: Colour, V: Variant>(
             if next.sample == 0 {
                 pixel = Pixel::of(engine, tile, pixels.start as usize + next.pixel);
             }
-            next.advance(job.samples);
+            next.advance(&paths.ends);
             let film = pixel.filter.sample([film_u[lane], film_v[lane]]);
             paths.filter_weight.push(film.weight);
             [raster[0][lane], raster[1][lane]] = (pixel.centre + film.offset).to_array();
@@ -120,19 +120,24 @@ impl<'f> Pixel<'f> {
     }
 }
 
-/// A sample of a pixel, both numbered within the batch.
+/// A sample of a pixel.
 #[derive(Clone, Copy, Default)]
 struct Sample {
+    /// Its number within the batch.
+    path: u32,
+    /// The number of the pixel within the batch.
     pixel: usize,
+    /// Its number within the pixel.
     sample: u32,
 }
 
 impl Sample {
-    /// Goes on to the next of the `samples` of a pixel, or to the first of the next pixel.
+    /// Goes on to the next sample of a pixel, or to the first of the next pixel: `ends` has the first of the next one for each.
     #[inline(always)]
-    fn advance(&mut self, samples: u32) {
+    fn advance(&mut self, ends: &[u32]) {
+        self.path += 1;
         self.sample += 1;
-        if self.sample == samples {
+        if self.path == ends[self.pixel] {
             self.sample = 0;
             self.pixel += 1;
         }

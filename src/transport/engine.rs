@@ -7,6 +7,7 @@ use glam::Vec3;
 use super::accelerator::Accelerator;
 use super::batch::Segments;
 use super::emission_table::EmissionTable;
+use super::path_counts::PathCounts;
 use super::settings::TransportSettings;
 use super::shape_table::ShapeTable;
 use crate::embree::Version;
@@ -44,11 +45,9 @@ pub struct Engine {
 pub struct TileJob<'k> {
     /// The random numbers of the batch.
     pub key: StreamKey,
-    /// Samples per pixel of all batches of the tile before this one.
-    pub first_sample: u64,
-    /// Camera paths per pixel, positive.
-    pub samples: u32,
-    /// The weight of each of them in its pixel, positive.
+    /// How many camera paths each pixel gets.
+    pub counts: PathCounts<'k>,
+    /// What those of a pixel weigh together in it, however many they are; positive.
     pub weight: f64,
     /// What was learned before, of a render that learns.
     pub knowledge: Option<&'k Knowledge>,

@@ -147,7 +147,7 @@ impl Lineage {
             let brought = first.births.iter().zip(&first.light).zip(&first.cost);
             let seen = self.seen.iter().copied().chain(std::iter::repeat(0.0));
             for (((birth, &light), &cost), seen) in brought.zip(seen) {
-                let pixel = &mut pixels[(birth.parent / paths.samples) as usize];
+                let pixel = &mut pixels[paths.pixel(birth.parent) as usize];
                 pixel.paths += 1;
                 pixel.radiance += light;
                 let noisy = light - seen;
@@ -172,13 +172,14 @@ pub(super) fn first_births(births: &mut Vec<Birth>, paths: usize) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::path_counts::PathCounts;
     use super::*;
     use crate::spectrum::{Rgb, Spectrum};
 
     /// Two paths of one pixel: one sees a lamp of radiance 10, to the other light of radiance 1 is reflected.
     fn observed(sets_aside: bool) -> PixelObservation {
         let mut paths = CameraPaths::<Rgb>::new();
-        paths.restart(0..1, 2);
+        paths.restart(0..1, PathCounts::Even(2));
         let mut segments = Segments::<Rgb>::new();
         segments.restart(0, 2);
         first_births(&mut segments.births, 2);
@@ -202,7 +203,7 @@ mod tests {
     #[test]
     fn bounces_cost_more_than_other_rays() {
         let mut paths = CameraPaths::<Rgb>::new();
-        paths.restart(0..1, 1);
+        paths.restart(0..1, PathCounts::Even(1));
         let mut segments = Segments::<Rgb>::new();
         segments.restart(0, 1);
         first_births(&mut segments.births, 1);

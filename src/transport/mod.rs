@@ -30,6 +30,7 @@ mod light_chunk;
 mod lineage;
 mod matte;
 mod offset;
+mod path_counts;
 mod pipeline;
 mod recollection;
 mod recorded_rays;
@@ -48,6 +49,7 @@ mod walk_stage;
 
 pub use accelerator::{Accelerator, AcceleratorOptions};
 pub use engine::{Engine, TileJob};
+pub use path_counts::PathCounts;
 pub use recorded_rays::RecordedRays;
 pub use settings::{DirectLight, TransportSettings};
 pub use stages::{Stage, StageTimes};

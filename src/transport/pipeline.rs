@@ -6,6 +6,7 @@ use super::arrange::Arrangement;
 use super::batch::{CameraPaths, Segments, ShadowRays, Vertices};
 use super::engine::{Engine, TileJob};
 use super::lineage::Lineage;
+use super::path_counts::PathCounts;
 use super::recorded_rays::RecordedRays;
 use super::settings::DirectLight;
 use super::stages::{Stage, Stopwatch};
@@ -64,16 +65,17 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
     /// Traces a tile's samples of a pass and adds them to its pixels, batch by batch.
     pub fn trace(&mut self, engine: &Engine, job: &TileJob<'_>, tile: &mut FilmTile) {
         let lessons = job.knowledge.map_or(0, Knowledge::lessons);
-        let mut sampler = Sampler::new(engine.settings.sampler, job.key, job.first_sample, lessons);
+        let mut sampler = Sampler::new(engine.settings.sampler, job.key, lessons);
         let pixels = tile.pixels.count() as u32;
-        let batch = if engine.sorts() {
-            (BATCH / job.samples).max(1)
-        } else {
-            pixels
-        };
-        for first in (0..pixels).step_by(batch as usize) {
-            let pixels = first..pixels.min(first + batch);
-            self.trace_pixels(engine, job, tile, pixels, &mut sampler);
+        let mut first = 0;
+        while first < pixels {
+            let next = if engine.sorts() {
+                end_of_batch(job.counts, first, pixels)
+            } else {
+                pixels
+            };
+            self.trace_pixels(engine, job, tile, first..next, &mut sampler);
+            first = next;
         }
     }
 
@@ -160,7 +162,7 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             }
             stopwatch.lap(Stage::Intersect, &mut self.statistics.stages);
             if engine.sorts() {
-                self.arrangement.arrange(job.samples, &mut self.segments);
+                self.arrangement.arrange(&self.paths, &mut self.segments);
                 stopwatch.lap(Stage::Arrange, &mut self.statistics.stages);
             }
             if job.learns {
@@ -233,4 +235,14 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
             stopwatch.lap(Stage::Scatter, &mut self.statistics.stages);
         }
     }
+}
+
+/// The end of the batch that begins with pixel `first` of so many `pixels`: with the next one it would have more than [`BATCH`] camera paths.
+fn end_of_batch(counts: PathCounts<'_>, first: u32, pixels: u32) -> u32 {
+    let mut paths = 0;
+    let fits = |&pixel: &u32| {
+        paths += counts.of_pixel(pixel as usize);
+        pixel == first || paths <= BATCH
+    };
+    first + (first..pixels).take_while(fits).count() as u32
 }

@@ -44,7 +44,7 @@ impl Recollection {
             [*mean, *square, *cost] = [known.mean, known.square, known.cost];
         }
         for (brightness, path) in brightness.iter_mut().zip(&vertices.path) {
-            *brightness = paths.brightness[(path / paths.samples) as usize];
+            *brightness = paths.brightness[paths.pixel(*path) as usize];
         }
         Some(Learned {
             mean,

@@ -22,7 +22,7 @@ mod tests {
     use crate::spectrum::Rgb;
     use crate::{LoadOptions, Render, Scene, Settings};
 
-    use super::super::{TileJob, TraceBatches, Tracer};
+    use super::super::{PathCounts, TileJob, TraceBatches, Tracer};
     use super::*;
 
     #[test]
@@ -40,9 +40,8 @@ mod tests {
         };
         let job = TileJob {
             key,
-            first_sample: 0,
-            samples: 4,
-            weight: 1.0,
+            counts: PathCounts::Even(4),
+            weight: 4.0,
             knowledge: None,
             learns: false,
             reliance: Reliance::ALL,

@@ -11,7 +11,8 @@ use crate::sampling::SamplerKind;
 use crate::spectrum::{Colour, SpectrumArithmetic, xyz_from_srgb};
 use crate::walk::Scope;
 
-/// Adds every path to its pixel of the tile, with the same `weight`; those that carry no radiance count as black there, and in `dropped`.
+/// Adds every path to its pixel of the tile, where all of a pixel have the same `weight` together; those that carry no radiance count as black there, and in
+/// `dropped`.
 pub(super) fn expose<C: Colour>(
     engine: &Engine,
     weight: f64,
@@ -55,10 +56,11 @@ fn find_colours<C: Colour>(paths: &mut CameraPaths<C>) {
 fn expose_moments<C: Colour>(paths: &CameraPaths<C>, weight: f64, moments: &mut SecondMoments) {
     for path in 0..paths.radiance.len() {
         if let Some(rgb) = rgb(paths, path) {
+            let pixel = paths.pixel(path as u32);
+            let weight = weight / f64::from(paths.count(pixel as usize));
             let weight = weight * f64::from(paths.filter_weight[path]);
             let xyz = xyz_from_srgb(rgb.map(f64::from));
-            let pixel = paths.pixels.start + paths.pixel(path as u32);
-            moments.add(pixel as usize, xyz, weight);
+            moments.add((paths.pixels.start + pixel) as usize, xyz, weight);
         }
     }
 }
@@ -75,9 +77,11 @@ fn expose_pixels<C: Colour, A: Accumulator>(
     pixels: &mut [PixelStatistics<A>],
     dropped: &mut DroppedSamples,
 ) {
-    let samples = paths.samples;
     let mut path = 0;
-    for pixel in &mut pixels[paths.pixels.start as usize..paths.pixels.end as usize] {
+    let pixels = &mut pixels[paths.pixels.start as usize..paths.pixels.end as usize];
+    for (number, pixel) in pixels.iter_mut().enumerate() {
+        let samples = paths.count(number);
+        let weight = weight / f64::from(samples);
         // A copy can stay in registers.
         let mut statistics = *pixel;
         let mut sum = [A::default(); 3];

@@ -38,7 +38,7 @@ pub(super) fn decide<C: Colour, V: Variant>(
     } = decision;
     particles.resize(vertices.len());
     let (scalar, scope) = (strategy.scalar(), strategy.scope());
-    show(vertices, scalar, scope, paths.samples, particles);
+    show(vertices, scalar, scope, &paths.pixel, particles);
     let population = Population {
         importance: &particles.importance,
         albedo: &particles.albedo,
@@ -54,7 +54,7 @@ pub(super) fn decide<C: Colour, V: Variant>(
     strategy.resample(&population, sampler.stream(), offspring)
 }
 
-/// Fills the columns of `particles`, which are as long as `vertices`.
+/// Fills the columns of `particles`, which are as long as `vertices`; `pixels` has the pixel of every camera path.
 #[multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -63,7 +63,7 @@ fn show<C: Colour, V: Variant>(
     vertices: &Vertices<C, V>,
     wanted: Scalar,
     scope: Scope,
-    samples: u32,
+    pixels: &[u32],
     particles: &mut Particles,
 ) {
     let scalar = |spectrum: C::Spectrum| match wanted {
@@ -99,7 +99,7 @@ fn show<C: Colour, V: Variant>(
         Scope::Particle | Scope::CameraPath => particles.group.copy_from_slice(&vertices.path),
         Scope::Pixel => {
             for (group, path) in particles.group.iter_mut().zip(&vertices.path) {
-                *group = path / samples;
+                *group = pixels[*path as usize];
             }
         }
         Scope::Tile => particles.group.fill(0),

@@ -91,7 +91,7 @@ fn the_filter_ends_more_paths_where_neighbours_hold_the_balance() {
         pass: 0,
     };
     let counts = |kind, strategy: &dyn Strategy| {
-        let sampler = Sampler::new(kind, key, 0, 1);
+        let sampler = Sampler::new(kind, key, 1);
         known.counts_at(strategy, sampler.decisions(&points))
     };
     let (filter, ears) = (filter(Objective::Relative), Ears::default());
