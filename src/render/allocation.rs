@@ -140,26 +140,25 @@ impl Allocation {
             let (x, y) = tile.position(index);
             y as usize * size.width as usize + x as usize
         };
-        let mut pixels = vec![Known::default(); size.pixels()];
+        let brightness = mean(film.pixels().map(|pixel| mean(pixel.mean())));
+        let darkest = (DARKEST * brightness).powi(2);
+        let mut errors = vec![Average::default(); size.pixels()];
         for (mine, tile) in self.tiles.iter().zip(film.tiles()) {
             let both = tile.pixels.iter().zip(&mine.squares).enumerate();
             for (index, (pixel, &square)) in both {
-                pixels[place(tile, index)] = Known::of(&pixel, f64::from(square));
+                let error = Known::of(&pixel, f64::from(square)).error(objective, darkest);
+                errors[place(tile, index)] = Average::of(error);
             }
         }
-        let brightness = mean(pixels.iter().map(|pixel| pixel.mean));
-        let darkest = (DARKEST * brightness).powi(2);
-        let error = |pixel: &Known| Average::of(pixel.error(objective, darkest));
-        let errors: Vec<Average> = pixels.iter().map(error).collect();
         let errors = neighbourhood_sums(&errors, size, REACH);
-        let mut shares: Vec<f64> = errors.iter().map(|error| error.mean().sqrt()).collect();
-        let most = LARGEST_SHARE * mean(shares.iter().copied());
-        shares.iter_mut().for_each(|share| *share = share.min(most));
-        let all = mean(shares.iter().copied());
+        let share = |error: &Average| error.mean().sqrt();
+        let most = LARGEST_SHARE * mean(errors.iter().map(share));
+        let share = |error: &Average| share(error).min(most);
+        let all = mean(errors.iter().map(share));
         if all > 0.0 && all.is_finite() {
             for (mine, tile) in self.tiles.iter_mut().zip(film.tiles()) {
-                for (index, share) in mine.shares.iter_mut().enumerate() {
-                    *share = (shares[place(tile, index)] / all) as f32;
+                for (index, own) in mine.shares.iter_mut().enumerate() {
+                    *own = (share(&errors[place(tile, index)]) / all) as f32;
                 }
             }
         }
@@ -167,7 +166,7 @@ impl Allocation {
 }
 
 /// What is known of a pixel, as a mean over its channels.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Known {
     mean: f64,
     variance_of_mean: f64,
