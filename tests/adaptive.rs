@@ -12,8 +12,9 @@ use cohort::scene::{LoadOptions, Scene};
 use cohort::transport::DirectLight;
 use cohort::walk::{Objective, StrategyKind, StrategyOptions};
 
-use support::estimate::sidak_threshold;
+use support::estimate::{Estimate, sidak_threshold};
 use support::render::{many_emitters, replicates, replicates_with_rare_highlights};
+use support::replicates::Replicates;
 
 fn settings(strategy: StrategyKind, sampler: SamplerKind) -> Settings {
     let objective = (strategy == StrategyKind::Ears).then_some(Objective::Mse);
@@ -82,7 +83,7 @@ fn what_was_seen_before_has_no_say_in_the_mean() {
                 direct_light,
                 ..settings(StrategyKind::Roulette, SamplerKind::Independent)
             };
-            replicates_with_rare_highlights(&scene, settings, 0..128, 128).blocks(8)
+            replicates_with_rare_highlights(&scene, settings, 0..128, 128)
         };
         for (strategy, sampler, guiding) in CASES {
             let settings = Settings {
@@ -92,8 +93,15 @@ fn what_was_seen_before_has_no_say_in_the_mean() {
                 ..settings(strategy, sampler)
             };
             let adaptive = replicates_with_rare_highlights(&scene, settings, 1000..1128, 64);
-            let adaptive = adaptive.blocks(8);
-            let pairs = adaptive.iter().flatten().zip(plain.iter().flatten());
+            // Of the whole image, which tells most, and of its parts.
+            let estimates = |images: &Replicates| -> Vec<Estimate> {
+                [24, 8]
+                    .iter()
+                    .flat_map(|&side| images.blocks(side).concat())
+                    .collect()
+            };
+            let (adaptive, plain) = (estimates(&adaptive), estimates(&plain));
+            let pairs = adaptive.iter().zip(&plain);
             let limit = sidak_threshold(1e-3, 2 * CASES.len() * pairs.clone().count());
             let mut largest = 0.0_f64;
             for (one, other) in pairs {
