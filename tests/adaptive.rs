@@ -15,6 +15,7 @@ use cohort::walk::{Objective, StrategyKind, StrategyOptions};
 use support::estimate::{Estimate, sidak_threshold};
 use support::render::{many_emitters, replicates, replicates_with_rare_highlights};
 use support::replicates::Replicates;
+use support::room::{View, room};
 
 fn settings(strategy: StrategyKind, sampler: SamplerKind) -> Settings {
     let objective = (strategy == StrategyKind::Ears).then_some(Objective::Mse);
@@ -42,38 +43,25 @@ const CASES: [(StrategyKind, SamplerKind, bool); 5] = [
     (StrategyKind::ParticleFilter, SamplerKind::ArrayQmc, true),
 ];
 
-/// A room with a small lamp. Half of the back wall is dark.
-const ROOM: &str = r#"<scene version="3.0.0">
-    <integrator type="path"><integer name="max_depth" value="6"/></integrator>
-    <sensor type="perspective">
-        <float name="fov" value="60"/>
-        <transform name="to_world"><lookat origin="0, -0.2, -0.95" target="0, -0.3, 0" up="0, 1, 0"/></transform>
-        <film type="hdrfilm"><integer name="width" value="24"/><integer name="height" value="24"/><rfilter type="box"/></film>
-    </sensor>
-    <shape type="cube">
-        <boolean name="flip_normals" value="true"/>
-        <bsdf type="diffuse"><float name="reflectance" value="0.6"/></bsdf>
-    </shape>
-    <shape type="rectangle">
-        <transform name="to_world"><scale x="0.5"/><rotate y="1" angle="180"/><translate x="0.5" z="0.99"/></transform>
-        <bsdf type="diffuse"><float name="reflectance" value="0.05"/></bsdf>
-    </shape>
-    <shape type="rectangle">
-        <transform name="to_world"><scale value="0.1"/><rotate x="1" angle="90"/><translate y="0.95" z="-0.3"/></transform>
-        <bsdf type="diffuse"><float name="reflectance" value="0"/></bsdf>
-        <emitter type="area"><float name="radiance" value="100"/></emitter>
-    </shape>
-</scene>"#;
-
 /// Without next-event estimation lamps are found by rare paths: pixels that have not found one yet seem to have no noise. If what they get less of weighed
 /// less, the image would be too dark.
 #[test]
 fn what_was_seen_before_has_no_say_in_the_mean() {
-    let room = Scene::from_xml(ROOM, &LoadOptions::default());
-    let room = Arc::new(room.expect("the scene can be loaded"));
+    let view = View {
+        side: 24,
+        field_of_view: 60,
+        origin: "0, -0.2, -0.95",
+        target: "0, -0.3, 0",
+    };
+    let lamp = r#"<rotate x="1" angle="90"/><translate y="0.95" z="-0.3"/>"#;
+    // Half of the wall that is seen.
+    let dark = r#"<shape type="rectangle">
+        <transform name="to_world"><scale x="0.5"/><rotate y="1" angle="180"/><translate x="0.5" z="0.99"/></transform>
+        <bsdf type="diffuse"><float name="reflectance" value="0.05"/></bsdf>
+    </shape>"#;
     let scenes = [
         (many_emitters(24), DirectLight::NextEvent),
-        (room, DirectLight::Off),
+        (room(&view, lamp, dark), DirectLight::Off),
     ];
     for (scene, direct_light) in scenes {
         let plain = {

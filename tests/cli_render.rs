@@ -114,6 +114,7 @@ fn the_built_in_scene() {
         ("strategy.rule", "learned"),
         ("sampler", "array-qmc"),
         ("guiding", "on"),
+        ("adaptive", "off"),
         ("colour", "spectral, 4 wavelengths a path"),
         ("film-sums", "double"),
         ("direct-light", "next-event"),
@@ -231,6 +232,20 @@ fn a_named_strategy_has_no_sampler_and_no_guiding_by_default() {
         assert_eq!(metadata["sampler"], sampler, "{arguments:?}");
         assert_eq!(metadata["guiding"], guiding, "{arguments:?}");
     }
+}
+
+#[test]
+fn adaptive_renders_say_how_many_samples_pixels_have() {
+    let folder = Folder::new();
+    let output = folder.render(SCENE, ["--spp", "64", "--adaptive", "on"]);
+    assert!(output.status.success(), "{output:?}");
+    let metadata = metadata(&folder.path().join("out.exr"));
+    assert_eq!(metadata["adaptive"], "on");
+    let (fewest, most) = metadata["samples"].split_once(" to ").unwrap();
+    let [fewest, most] = [fewest, most].map(|count| count.parse::<u32>().unwrap());
+    assert!(0 < fewest && fewest < 64 && 64 < most, "{fewest} to {most}");
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("64.00 samples per pixel"), "{said}");
 }
 
 #[test]

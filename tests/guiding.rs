@@ -14,6 +14,7 @@ use cohort::walk::{StrategyKind, StrategyOptions};
 use support::estimate::{Estimate, sidak_threshold};
 use support::files;
 use support::render::{many_emitters, replicates_in_growing_passes};
+use support::room::{View, room};
 
 const SPECTRAL: ColourMode = ColourMode::Spectral(WavelengthCount::Four);
 
@@ -115,25 +116,6 @@ fn every_surface_looks_the_same_guided_as_not() {
     }
 }
 
-/// A room that a lamp lights by way of one spot of its ceiling: all light comes from there.
-const INDIRECT: &str = r#"<scene version="3.0.0">
-    <integrator type="path"/>
-    <sensor type="perspective">
-        <float name="fov" value="60"/>
-        <transform name="to_world"><lookat origin="0, -0.2, -0.95" target="0, -0.3, 0" up="0, 1, 0"/></transform>
-        <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="16"/><rfilter type="box"/></film>
-    </sensor>
-    <shape type="cube">
-        <boolean name="flip_normals" value="true"/>
-        <bsdf type="diffuse"><float name="reflectance" value="0.6"/></bsdf>
-    </shape>
-    <shape type="rectangle">
-        <transform name="to_world"><scale value="0.1"/><rotate x="1" angle="-90"/><translate x="0.6" y="0.9" z="0.6"/></transform>
-        <bsdf type="diffuse"><float name="reflectance" value="0"/></bsdf>
-        <emitter type="area"><float name="radiance" value="100"/></emitter>
-    </shape>
-</scene>"#;
-
 /// A floor between two lamps of the same brightness, of which a wall hides one.
 const HIDDEN: &str = r#"<scene version="3.0.0">
     <integrator type="path"><integer name="max_depth" value="2"/></integrator>
@@ -182,8 +164,15 @@ fn lamps_that_are_hidden_are_hardly_looked_at() {
 
 #[test]
 fn guided_directions_leave_less_noise() {
-    let scene = Scene::from_xml(INDIRECT, &LoadOptions::default());
-    let scene = Arc::new(scene.expect("the scene can be loaded"));
+    // The lamp faces the ceiling, near which it hangs: all light comes from one spot.
+    let view = View {
+        side: 16,
+        field_of_view: 60,
+        origin: "0, -0.2, -0.95",
+        target: "0, -0.3, 0",
+    };
+    let lamp = r#"<rotate x="1" angle="-90"/><translate x="0.6" y="0.9" z="0.6"/>"#;
+    let scene = room(&view, lamp, "");
     for sampler in SamplerKind::ALL {
         let noise = |guiding| {
             let settings = Settings {

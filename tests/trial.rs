@@ -13,6 +13,7 @@ use cohort::scene::{LoadOptions, Scene};
 use cohort::walk::{StrategyKind, StrategyOptions};
 
 use support::files;
+use support::room::{View, room};
 
 fn settings(kind: StrategyKind, threads: usize) -> Settings {
     let strategy = kind.build(&StrategyOptions::default());
@@ -47,23 +48,16 @@ fn render(scene: &Arc<Scene>, settings: Settings, samples: u32) -> Outcome {
 }
 
 /// A lamp that faces the ceiling: nearly all light arrives from a few directions that only guiding finds.
-const INDIRECT: &str = r#"<scene version="3.0.0">
-    <integrator type="path"/>
-    <sensor type="perspective">
-        <float name="fov" value="70"/>
-        <transform name="to_world"><lookat origin="-0.9, 0, 0" target="1, -0.3, 0.2" up="0, 1, 0"/></transform>
-        <film type="hdrfilm"><integer name="width" value="64"/><integer name="height" value="64"/><rfilter type="box"/></film>
-    </sensor>
-    <shape type="cube">
-        <boolean name="flip_normals" value="true"/>
-        <bsdf type="diffuse"><float name="reflectance" value="0.6"/></bsdf>
-    </shape>
-    <shape type="rectangle">
-        <transform name="to_world"><scale value="0.1"/><rotate x="1" angle="-90"/><translate x="0.6" y="0.9" z="0.6"/></transform>
-        <bsdf type="diffuse"><float name="reflectance" value="0"/></bsdf>
-        <emitter type="area"><float name="radiance" value="100"/></emitter>
-    </shape>
-</scene>"#;
+fn indirect() -> Arc<Scene> {
+    let view = View {
+        side: 64,
+        field_of_view: 70,
+        origin: "-0.9, 0, 0",
+        target: "1, -0.3, 0.2",
+    };
+    let lamp = r#"<rotate x="1" angle="-90"/><translate x="0.6" y="0.9" z="0.6"/>"#;
+    room(&view, lamp, "")
+}
 
 /// Under the sky of the same radiance everywhere, on a plane: light that next-event estimation finds in one step.
 const OPEN: &str = r#"<scene version="3.0.0">
@@ -90,22 +84,21 @@ const ENOUGH: u32 = 1024;
 
 #[test]
 fn guiding_is_kept_where_it_pays_and_left_aside_where_it_does_not() {
-    let relied_on =
-        |xml| render(&of_xml(xml), settings(StrategyKind::Roulette, 2), ENOUGH).reliance;
+    let relied_on = |scene| render(&scene, settings(StrategyKind::Roulette, 2), ENOUGH).reliance;
     let reliance = |guiding| {
         Some(Reliance {
             counts: false,
             guiding,
         })
     };
-    assert_eq!(relied_on(INDIRECT), reliance(true));
-    assert_eq!(relied_on(OPEN), reliance(false));
+    assert_eq!(relied_on(indirect()), reliance(true));
+    assert_eq!(relied_on(of_xml(OPEN)), reliance(false));
 }
 
 /// What is rendered aside does not become part of the image: where everything is relied on, the image is that of a render that does not try.
 #[test]
 fn a_trial_leaves_no_trace_in_the_image() {
-    let scene = of_xml(INDIRECT);
+    let scene = indirect();
     let tried = render(
         &scene,
         settings(StrategyKind::ParticleFilter, 2),

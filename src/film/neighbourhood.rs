@@ -14,27 +14,27 @@ where
 {
     let [width, height] = [size.width as usize, size.height as usize];
     assert_eq!(values.len(), width * height, "an image of another size");
-    let sum = |line: &mut dyn Iterator<Item = T>| {
-        line.fold(T::default(), |mut sum, value| {
-            sum += value;
-            sum
-        })
-    };
     let mut rows = Vec::with_capacity(values.len());
     for row in values.chunks(width) {
         for x in 0..width {
             let near = x.saturating_sub(reach)..=(x + reach).min(width - 1);
-            rows.push(sum(&mut row[near].iter().copied()));
+            rows.push(sum(row[near].iter().copied()));
         }
     }
     let mut sums = Vec::with_capacity(values.len());
     for y in 0..height {
         let near = y.saturating_sub(reach)..=(y + reach).min(height - 1);
         for x in 0..width {
-            sums.push(sum(&mut near.clone().map(|y| rows[y * width + x])));
+            sums.push(sum(near.clone().map(|y| rows[y * width + x])));
         }
     }
     sums
+}
+
+fn sum<T: Default + AddAssign>(values: impl Iterator<Item = T>) -> T {
+    let mut sum = T::default();
+    values.for_each(|value| sum += value);
+    sum
 }
 
 #[cfg(test)]

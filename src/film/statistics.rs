@@ -10,7 +10,8 @@ use super::Accumulator;
 /// resamples several camera paths together, all samples that one population had in the pixel. Their variance shows in how far each
 /// unit is from the mean of those before it. The noise of units need not be alike: a render that learns has better ones later.
 ///
-/// A sample has a *weight*, which nothing random may decide: 1, or less where much noise is expected.
+/// A sample has a *weight*: 1, or less where much noise is expected, or where there are more samples than elsewhere. Nothing random may decide what the samples of
+/// a pass weigh together.
 ///
 /// `A` are the numbers of the sums. All other arithmetic is in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -225,6 +225,8 @@ mod tests {
         assert_eq!(sobol.sampler, Some(SamplerKind::Sobol));
         let guided: StrategySpec = "roulette:guiding=on".parse().unwrap();
         assert_eq!((guided.guiding, sobol.guiding), (Some(true), None));
+        let adaptive: StrategySpec = "roulette:adaptive=on".parse().unwrap();
+        assert_eq!((adaptive.adaptive, guided.adaptive), (Some(true), None));
         let tried: StrategySpec = "ears:trial=on".parse().unwrap();
         assert_eq!((tried.trial, guided.trial), (Some(true), None));
         let plain: StrategySpec = "roulette".parse().unwrap();

@@ -21,12 +21,13 @@ use crate::film::FilmTile;
 use crate::learning::Knowledge;
 use crate::sampling::Sampler;
 use crate::spectrum::Colour;
+use crate::walk::Scope;
 
 /// After so many bounces a batch is cut off and the cut is reported: only light that never dies gets here.
 const MAX_BOUNCES: u32 = 1 << 16;
 
-/// The most camera paths of a batch in which populations are sorted, but that of one pixel stays whole: so many fit the cache, and more do
-/// not make rays faster.
+/// The most camera paths of a batch in which populations are sorted, or pixels have numbers of their own, but those of one pixel stay together: so many fit
+/// the cache, and more do not make rays faster.
 const BATCH: u32 = 4096;
 
 /// The stages in a row, and the memory of one thread: it traces batch after batch.
@@ -67,9 +68,13 @@ impl<C: Colour, V: Variant> Pipeline<C, V> {
         let lessons = job.knowledge.map_or(0, Knowledge::lessons);
         let mut sampler = Sampler::new(engine.settings.sampler, job.key, lessons);
         let pixels = tile.pixels.count() as u32;
+        // Where pixels have numbers of their own, a tile may have many times the paths of others.
+        let is_population = engine.strategy.scope() == Scope::Tile;
+        let is_uneven = matches!(job.counts, PathCounts::Each(_));
+        let is_cut = engine.sorts() || (is_uneven && !is_population);
         let mut first = 0;
         while first < pixels {
-            let next = if engine.sorts() {
+            let next = if is_cut {
                 end_of_batch(job.counts, first, pixels)
             } else {
                 pixels

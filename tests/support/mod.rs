@@ -7,3 +7,4 @@ pub mod files;
 pub mod mitsuba;
 pub mod render;
 pub mod replicates;
+pub mod room;
