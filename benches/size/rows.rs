@@ -5,7 +5,7 @@ use super::study::Measured;
 use super::table::Table;
 
 /// The names of the columns.
-pub const COLUMNS: [&str; 12] = [
+pub const COLUMNS: [&str; 14] = [
     "study",
     "triangles",
     "pixels",
@@ -13,6 +13,8 @@ pub const COLUMNS: [&str; 12] = [
     "s",
     "s/Mpath",
     "to the row above",
+    "inside Embree, s/Mpath",
+    "outside, s/Mpath",
     "build s",
     "load MiB",
     "BVH MiB",
@@ -31,18 +33,25 @@ const LARGEST: usize = 3;
 pub fn push_meshes(table: &mut Table, measured: &[Measured]) {
     push_subjects(table, "mesh", measured);
     let size: Number = |m| m.subject.triangles as f64;
-    let added = added_per_factor_10(&points(measured, size, Measured::seconds_per_million_paths));
     let mut row = labelled("mesh: added per factor 10");
-    row[5] = format!("{added:+.3}");
+    let times: [(usize, Number); 3] = [
+        (5, Measured::seconds_per_million_paths),
+        (7, Measured::embree_seconds_per_million_paths),
+        (8, Measured::other_seconds_per_million_paths),
+    ];
+    for (column, time) in times {
+        let added = added_per_factor_10(&points(measured, size, time));
+        row[column] = format!("{added:+.3}");
+    }
     table.push(row);
 
     let mut row = labelled("mesh: exponent of triangles");
     let numbers: [(usize, Number); 5] = [
         (5, Measured::seconds_per_million_paths),
-        (7, |m| m.build_seconds),
-        (8, |m| m.load_mib),
-        (9, |m| m.bvh_mib),
-        (11, |m| m.peak_mib),
+        (9, |m| m.build_seconds),
+        (10, |m| m.load_mib),
+        (11, |m| m.bvh_mib),
+        (13, |m| m.peak_mib),
     ];
     fill_exponents(&mut row, measured, size, &numbers);
     table.push(row);
@@ -53,7 +62,7 @@ pub fn push_images(table: &mut Table, measured: &[Measured]) {
     push_subjects(table, "image", measured);
     let size: Number = |m| m.subject.pixels() as f64;
     let mut row = labelled("image: exponent of pixels");
-    let numbers: [(usize, Number); 2] = [(4, |m| m.seconds), (11, |m| m.peak_mib)];
+    let numbers: [(usize, Number); 2] = [(4, |m| m.seconds), (13, |m| m.peak_mib)];
     fill_exponents(&mut row, measured, size, &numbers);
     table.push(row);
 }
@@ -72,6 +81,8 @@ fn push_subjects(table: &mut Table, study: &str, measured: &[Measured]) {
             format!("{:.3}", m.seconds),
             format!("{per_million:.3}"),
             ratio.unwrap_or_default(),
+            format!("{:.3}", m.embree_seconds_per_million_paths()),
+            format!("{:.3}", m.other_seconds_per_million_paths()),
             format!("{:.3}", m.build_seconds),
             format!("{:.1}", m.load_mib),
             format!("{:.1}", m.bvh_mib),

@@ -12,6 +12,8 @@ pub struct Measured {
     pub subject: Subject,
     /// Median seconds of a render.
     pub seconds: f64,
+    /// Median seconds of a render inside Embree.
+    pub embree_seconds: f64,
     /// Seconds to build the acceleration structure.
     pub build_seconds: f64,
     /// Resident memory of the loaded scene in MiB.
@@ -25,8 +27,22 @@ pub struct Measured {
 impl Measured {
     /// Seconds per million camera paths.
     pub fn seconds_per_million_paths(&self) -> f64 {
+        self.per_million_paths(self.seconds)
+    }
+
+    /// Seconds inside Embree per million camera paths.
+    pub fn embree_seconds_per_million_paths(&self) -> f64 {
+        self.per_million_paths(self.embree_seconds)
+    }
+
+    /// Seconds outside Embree per million camera paths.
+    pub fn other_seconds_per_million_paths(&self) -> f64 {
+        self.per_million_paths(self.seconds - self.embree_seconds)
+    }
+
+    fn per_million_paths(&self, seconds: f64) -> f64 {
         let paths = self.subject.pixels() as f64 * f64::from(self.subject.samples);
-        1e6 * self.seconds / paths
+        1e6 * seconds / paths
     }
 }
 
@@ -52,6 +68,7 @@ pub fn measure(subjects: Vec<Subject>, rounds: u32) -> Result<Vec<Measured>, Box
         measured.push(Measured {
             subject,
             seconds: median(runs.iter().map(|run| run.seconds)),
+            embree_seconds: median(runs.iter().map(|run| run.embree_seconds)),
             build_seconds: prepared.build_seconds,
             load_mib: prepared.load_mib,
             bvh_mib: prepared.bvh_mib,

@@ -28,6 +28,8 @@ pub struct Prepared {
 pub struct Run {
     /// Seconds to render the image once, from an empty film to a full one.
     pub seconds: f64,
+    /// Those of them that were spent inside Embree.
+    pub embree_seconds: f64,
     /// The most resident memory of the process so far, in MiB.
     pub peak_mib: f64,
 }
@@ -59,10 +61,12 @@ pub fn serve(subject: &Subject) -> Result<(), Box<dyn Error>> {
     for line in io::stdin().lines() {
         line?;
         let start = Instant::now();
+        let mut outcome = render.run(&StopFlag::new(), &());
+        let mut in_embree = outcome.statistics.intersection_time;
         for _ in 1..repeats {
-            render.run(&StopFlag::new(), &());
+            outcome = render.run(&StopFlag::new(), &());
+            in_embree += outcome.statistics.intersection_time;
         }
-        let outcome = render.run(&StopFlag::new(), &());
         let seconds = start.elapsed().as_secs_f64() / repeats as f64;
         // Not timed, but who renders has this memory to find as well.
         let image = outcome.film.image();
@@ -73,6 +77,7 @@ pub fn serve(subject: &Subject) -> Result<(), Box<dyn Error>> {
         )?;
         let run = Run {
             seconds,
+            embree_seconds: in_embree.as_secs_f64() / repeats as f64,
             peak_mib: memory::peak()?,
         };
         println!("{}", serde_json::to_string(&run)?);
