@@ -1,9 +1,9 @@
 //! How many directions are guided where a surface has lobes of its own: of a few shares, the one that would have varied least.
 //!
-//! Directions come from what was learned with probability s, otherwise from the lobes: their density is q_s = s g + (1 - s) p. Which s is good depends on
-//! whether it is the light or the lobe that is narrow. A direction that was drawn with density q and brought back w = f L / q tells of every share s what
-//! the second moment would be, the integral of (f L)^2 / q_s: it is the mean of w^2 q / q_s. (Müller 2019, chapter 10 of the course
-//! "Path Guiding in Production", learns the probability by gradient descent; here there are few to choose from.)
+//! A share s of directions comes from what was learned, the others from the lobes, with the density p (in which diffuse ones are guided themselves): together
+//! they have q_s = s g + (1 - s) p. Which s is good depends on whether it is the light or the lobe that is narrow. A direction that was drawn with density q
+//! and brought back w = f L / q tells of every share s what the second moment would be, the integral of (f L)^2 / q_s: it is the mean of w^2 q / q_s. (Müller
+//! 2019, chapter 10 of the course "Path Guiding in Production", learns the probability by gradient descent; here there are few to choose from.)
 
 use serde::{Deserialize, Serialize};
 

@@ -20,9 +20,9 @@ pub mod xml;
 pub use bsdfs::{
     Bsdf, BsdfSample, BsdfValue, CoatedBase, CommonParameters, Conductor, ConductorIndex,
     ConductorMaterial, Dielectric, DielectricMaterial, Diffuse, DiffuseMaterial, DirectionNumbers,
-    Distribution, Indices, Material, Model, Null, Perturbed, Plastic, PlasticMaterial, Principled,
-    PrincipledMaterial, PrincipledThin, PrincipledThinMaterial, Refraction, RoughConductor,
-    RoughConductorMaterial, RoughDielectric, RoughDielectricMaterial, RoughPlastic,
+    Distribution, Indices, Lobes, Material, Model, Null, Perturbed, Plastic, PlasticMaterial,
+    Principled, PrincipledMaterial, PrincipledThin, PrincipledThinMaterial, Refraction,
+    RoughConductor, RoughConductorMaterial, RoughDielectric, RoughDielectricMaterial, RoughPlastic,
     RoughPlasticMaterial, Roughness, SeenPoint, Side, ThinDielectric,
 };
 pub(crate) use bsdfs::{BsdfSamples, BsdfValues, SlopeLanes};

@@ -101,14 +101,16 @@ impl<S: SpectrumArithmetic> Framed<S> {
         (self.shininess() > 0.0).then(|| self.frame.to_world(mirrored))
     }
 
-    /// Whether what was learned can draw the directions of children.
+    /// What is made of what was learned when the directions of children are drawn.
     #[inline]
     pub fn guiding(&self) -> Guiding {
-        if !self.has_smooth_lobe() {
-            return Guiding::None;
-        }
+        let lobes = self.bsdf.lobes(self.outgoing);
         // What arrives within a narrow lobe is not learned.
-        Guiding::Mixed(1.0 / (1.0 + self.shininess() * (1.0 / NARROW)))
+        let reach = 1.0 / (1.0 + self.shininess() * (1.0 / NARROW));
+        Guiding {
+            diffuse: lobes.diffuse,
+            reach: if lobes.has_glossy { reach } else { 0.0 },
+        }
     }
 
     /// The smooth lobes for light that arrives from `direction`.
@@ -128,10 +130,11 @@ impl<S: SpectrumArithmetic> Framed<S> {
         self.bsdf.slope_view(self.outgoing)
     }
 
-    /// Draws an incident direction, which is in world space.
+    /// Draws an incident direction, which is in world space; diffuse lobes take the direction `diffuse`.
     #[inline]
-    pub fn sample(&self, numbers: &DirectionNumbers) -> BsdfSample<S> {
-        let sample = self.bsdf.sample(self.outgoing, numbers);
+    pub fn sample(&self, numbers: &DirectionNumbers, diffuse: Vec3) -> BsdfSample<S> {
+        let numbers = numbers.with_diffuse(self.frame.to_local(diffuse));
+        let sample = self.bsdf.sample(self.outgoing, &numbers);
         BsdfSample {
             incident: self.frame.to_world(sample.incident),
             weight: self.dispersed(sample.weight, sample.is_dispersive),

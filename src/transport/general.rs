@@ -124,7 +124,7 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
     #[inline]
     fn guiding(&self) -> Guiding {
         match self {
-            Self::Matte { .. } => Guiding::Alone,
+            Self::Matte { .. } => Guiding::MATTE,
             Self::Framed(framed) => framed.guiding(),
         }
     }
@@ -171,9 +171,11 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
         vertices: impl Iterator<Item = &'a Self> + Clone,
         normals: &VectorLanes<CHUNK>,
         [u, v, w]: &[[f32; CHUNK]; 3],
+        diffuse: &[[f32; CHUNK]; 2],
         samples: &mut BsdfSamples<S>,
     ) {
-        samples.draw_by_cosine(normals, u, v);
+        let [diffuse_u, diffuse_v] = diffuse;
+        samples.draw_by_cosine(normals, diffuse_u, diffuse_v);
         let mut slopes = SlopeLanes::new();
         for (lane, vertex) in vertices.clone().enumerate() {
             if let Self::Framed(framed) = vertex
@@ -191,7 +193,8 @@ impl<S: SpectrumArithmetic> Scattering<S> for Local<S> {
                 }
                 Self::Framed(framed) => {
                     let numbers = DirectionNumbers::new([u[lane], v[lane], w[lane]]);
-                    let sample = framed.sample(&numbers.with_slope(slopes.get(lane)));
+                    let numbers = numbers.with_slope(slopes.get(lane));
+                    let sample = framed.sample(&numbers, samples.direction.get(lane));
                     samples.direction.put(lane, sample.incident);
                     samples.weight[lane] = sample.weight;
                     samples.pdf[lane] = sample.pdf.0;

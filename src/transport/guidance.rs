@@ -1,7 +1,12 @@
 //! What was learned guides the directions of a chunk of children, and their densities.
 //!
-//! Where a surface is diffuse, directions are drawn from a warped square alone. Other smooth lobes are mixed with it: one of the two
-//! draws the direction, and the density is that of the mixture (one-sample MIS, balance heuristic). Discrete lobes are left alone.
+//! Diffuse lobes draw directions from a square, by the cosine: where it is warped they draw from the product of themselves and the light that was learned.
+//! Other smooth lobes are mixed with that: with a share s of directions in their place, a direction has the density
+//!
+//! q = (s + (1 - s) b) d c + (1 - s) (p - b c)
+//!
+//! where p is that of the surface, which draws from diffuse lobes with probability b, c = cos / pi, and d is the density of the warped square (one-sample
+//! MIS, balance heuristic). Discrete lobes are left alone.
 
 use std::f32::consts::FRAC_1_PI;
 
@@ -17,13 +22,15 @@ use crate::spectrum::SpectrumArithmetic;
 /// What is known in each lane.
 pub(super) struct Guidance<'k> {
     warps: [&'k SquareWarp; CHUNK],
-    /// The share of directions that are drawn from the warped square.
+    /// The probability with which diffuse lobes are drawn from; 0 where they are not guided.
+    diffuse: [f32; CHUNK],
+    /// The share of directions that are drawn from the warped square in place of other lobes.
     share: [f32; CHUNK],
-    /// Where they are mixed with the surface's own: the part of a [`GuidedShare`](crate::learning::GuidedShare) that the surface makes use of.
+    /// The part of a [`GuidedShare`](crate::learning::GuidedShare) that the surface makes use of.
     reach: [f32; CHUNK],
     /// The density of the point to which each was warped.
     density: [f32; CHUNK],
-    /// Which lanes draw from the warped square though it is mixed with lobes.
+    /// Which lanes draw from the warped square in place of other lobes.
     is_redirected: [bool; CHUNK],
 }
 
@@ -32,6 +39,7 @@ impl<'k> Guidance<'k> {
     pub fn new() -> Self {
         Self {
             warps: [&SquareWarp::UNIFORM; CHUNK],
+            diffuse: [0.0; CHUNK],
             share: [0.0; CHUNK],
             reach: [0.0; CHUNK],
             density: [1.0; CHUNK],
@@ -52,16 +60,15 @@ impl<'k> Guidance<'k> {
         let mut is_any_guided = false;
         for (lane, (vertex, number)) in (0..CHUNK).zip(vertices) {
             let insight = knowledge.insight(number);
-            let (share, reach) = match vertex.guiding() {
-                Guiding::None => (0.0, 0.0),
-                Guiding::Mixed(reach) => (reach * insight.mixed_share.value(), reach),
-                Guiding::Alone => (1.0, 0.0),
-            };
-            let [share, reach] = [share, reach].map(|part| if insight.guides { part } else { 0.0 });
+            let Guiding { diffuse, reach } = vertex.guiding();
+            let share = reach * insight.mixed_share.value();
+            let [diffuse, share, reach] =
+                [diffuse, share, reach].map(|part| if insight.guides { part } else { 0.0 });
+            self.diffuse[lane] = diffuse;
             self.share[lane] = share;
             self.reach[lane] = reach;
             self.warps[lane] = &insight.warp;
-            is_any_guided |= share > 0.0;
+            is_any_guided |= diffuse + share > 0.0;
         }
         is_any_guided
     }
@@ -77,28 +84,49 @@ impl<'k> Guidance<'k> {
     ) {
         let places = SquarePlaces::of(normals, directions);
         for lane in 0..vertices.len().min(CHUNK) {
-            let guided = guided_pdf(self.warps[lane], places.bins[lane], places.cosines[lane]);
-            values.pdf[lane] = mixed_pdf(self.share[lane], guided, values.pdf[lane]);
+            let density = self.warps[lane].density(places.bins[lane]);
+            values.pdf[lane] = self.pdf(lane, density, places.cosines[lane], values.pdf[lane]);
         }
     }
 
-    /// Warps the uniform `numbers` with which the first `count` vertices are about to draw directions.
+    /// The density of a direction in a lane, `cosine` from the normal, where that of the warped square is `density` and that of the surface is `own`.
     #[inline(always)]
-    pub fn warp(&mut self, count: usize, numbers: &mut [[f32; CHUNK]; 3]) {
+    fn pdf(&self, lane: usize, density: f32, cosine: f32, own: f32) -> f32 {
+        let (diffuse, share) = (self.diffuse[lane], self.share[lane]);
+        let by_cosine = cosine.max(0.0) * FRAC_1_PI;
+        // Where there are no others nothing is left but rounding.
+        let others = if diffuse >= 1.0 {
+            0.0
+        } else {
+            (own - diffuse * by_cosine).max(0.0)
+        };
+        (share + (1.0 - share) * diffuse) * density * by_cosine + (1.0 - share) * others
+    }
+
+    /// Warps the points of the square from which the diffuse lobes of the first `count` vertices are about to draw, and takes those who draw from it in place
+    /// of others; the rest of their `numbers` are for these.
+    #[inline(always)]
+    pub fn warp(
+        &mut self,
+        count: usize,
+        numbers: &mut [[f32; CHUNK]; 3],
+        points: &mut [[f32; CHUNK]; 2],
+    ) {
+        let [_, _, choices] = numbers;
+        let [u, v] = points;
         for lane in 0..count.min(CHUNK) {
-            let share = self.share[lane];
-            let [u, v, choice] = numbers.each_mut().map(|numbers| &mut numbers[lane]);
-            // Where it is mixed, one number decides who draws, and what is left of it chooses the lobe. Nobody can foresee who does, so
-            // both are worked out, without a jump.
-            let is_drawn_from_square = (share >= 1.0) | (*choice < share);
-            self.is_redirected[lane] = is_drawn_from_square & (share < 1.0);
-            let (point, density) = self.warps[lane].warp([*u, *v]);
-            let rest = ((*choice - share) / (1.0 - share)).clamp(0.0, 1.0 - f32::EPSILON);
-            let choose =
-                |square: f32, lobes: f32| if is_drawn_from_square { square } else { lobes };
-            [*u, *v] = [choose(point[0], *u), choose(point[1], *v)];
+            let (share, choice) = (self.share[lane], choices[lane]);
+            // One number decides who draws, and what is left of it chooses the lobe. Nobody can foresee who does, so both are worked out, without a jump.
+            let is_redirected = choice < share;
+            let rest = ((choice - share) / (1.0 - share)).clamp(0.0, 1.0 - f32::EPSILON);
+            choices[lane] = if is_redirected { choice } else { rest };
+            self.is_redirected[lane] = is_redirected;
+
+            let is_guided = self.diffuse[lane] + share > 0.0;
+            let (point, density) = self.warps[lane].warp([u[lane], v[lane]]);
+            let choose = |warped: f32, other: f32| if is_guided { warped } else { other };
+            [u[lane], v[lane]] = [choose(point[0], u[lane]), choose(point[1], v[lane])];
             self.density[lane] = choose(density, 1.0);
-            *choice = choose(*choice, rest);
         }
     }
 
@@ -118,43 +146,41 @@ impl<'k> Guidance<'k> {
         })
     }
 
-    /// Makes the directions that at most [`CHUNK`] `vertices` drew with the warped `numbers` those of the mixture.
+    /// Makes the directions that at most [`CHUNK`] `vertices` drew with the warped numbers and `points` those of the mixture.
     #[inline(always)]
     pub fn redirect<'a, S: SpectrumArithmetic, V: Scattering<S>>(
         &self,
         vertices: impl Iterator<Item = &'a V>,
         normals: &VectorLanes<CHUNK>,
-        numbers: &[[f32; CHUNK]; 3],
+        points: &[[f32; CHUNK]; 2],
         samples: &mut BsdfSamples<S>,
     ) {
         for (lane, vertex) in (0..CHUNK).zip(vertices) {
-            let share = self.share[lane];
-            // Of the matte ones, those that are not guided have the density 1.
-            if share >= 1.0 || share <= 0.0 {
+            let (diffuse, share) = (self.diffuse[lane], self.share[lane]);
+            // Those that are not guided have the density 1.
+            if diffuse >= 1.0 || diffuse + share <= 0.0 {
                 samples.pdf[lane] *= self.density[lane];
                 samples.weight[lane] *= 1.0 / self.density[lane];
             } else if self.is_redirected[lane] {
-                let local = warp::cosine_hemisphere([numbers[0][lane], numbers[1][lane]]);
+                let local = warp::cosine_hemisphere(points.map(|numbers| numbers[lane]));
                 let normal = normals.get(lane);
                 let direction = Frame::about(normal).to_world(local);
                 vertex.look(lane, direction, normal, samples);
-                let guided = self.density[lane] * local.z * FRAC_1_PI;
-                let pdf = mixed_pdf(share, guided, samples.pdf[lane]);
+                let pdf = self.pdf(lane, self.density[lane], local.z, samples.pdf[lane]);
                 // So far the weight is the value itself.
                 samples.weight[lane] *= 1.0 / pdf;
                 samples.pdf[lane] = pdf;
             } else {
-                let pdf = samples.pdf[lane];
-                if pdf == f32::INFINITY {
+                let own = samples.pdf[lane];
+                if own == f32::INFINITY {
                     samples.weight[lane] *= 1.0 / (1.0 - share);
                     continue;
                 }
                 let (bin, cosine) = place(normals.get(lane), samples.direction.get(lane));
-                let guided = guided_pdf(self.warps[lane], bin, cosine);
-                let mixed = mixed_pdf(share, guided, pdf);
-                let is_drawn = pdf > 0.0 && mixed > 0.0;
-                samples.weight[lane] *= if is_drawn { pdf / mixed } else { 0.0 };
-                samples.pdf[lane] = mixed;
+                let pdf = self.pdf(lane, self.warps[lane].density(bin), cosine, own);
+                let is_drawn = own > 0.0 && pdf > 0.0;
+                samples.weight[lane] *= if is_drawn { own / pdf } else { 0.0 };
+                samples.pdf[lane] = pdf;
             }
         }
     }
@@ -211,16 +237,6 @@ fn guided_pdf(warp: &SquareWarp, bin: Bin, cosine: f32) -> f32 {
     warp.density(bin) * cosine.max(0.0) * FRAC_1_PI
 }
 
-/// The density of a mixture with that `share` of guided directions.
-#[inline(always)]
-fn mixed_pdf(share: f32, guided: f32, pdf: f32) -> f32 {
-    if share >= 1.0 {
-        guided
-    } else {
-        share * guided + (1.0 - share) * pdf
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -236,7 +252,7 @@ mod tests {
         guidance.reach[3] = 0.8;
         guidance.share[3] = 0.8 * 0.25;
         let own = 2.0;
-        let pdf = mixed_pdf(guidance.share[3], guided, own);
+        let pdf = guidance.pdf(3, 1.0, 0.5, own);
         let direction = MixedDirection {
             pdf,
             guided,

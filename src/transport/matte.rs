@@ -89,7 +89,7 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
 
     #[inline(always)]
     fn guiding(&self) -> Guiding {
-        Guiding::Alone
+        Guiding::MATTE
     }
 
     #[inline(always)]
@@ -114,7 +114,8 @@ impl<S: SpectrumArithmetic> Scattering<S> for Diffuse<S> {
     fn sample<'a>(
         vertices: impl Iterator<Item = &'a Self> + Clone,
         normals: &VectorLanes<CHUNK>,
-        [u, v, _]: &[[f32; CHUNK]; 3],
+        _numbers: &[[f32; CHUNK]; 3],
+        [u, v]: &[[f32; CHUNK]; 2],
         samples: &mut BsdfSamples<S>,
     ) {
         samples.sample_diffuse(vertices, normals, u, v);

@@ -75,12 +75,13 @@ pub(super) fn scatter<C: Colour, V: Variant>(
             let insights = parents.clone().map(|parent| vertices.insight[parent]);
             guidance.ask(knowledge, bsdfs.clone().zip(insights))
         });
+        let mut diffuse = [numbers[0], numbers[1]];
         if is_guided {
-            guidance.warp(children.len(), &mut numbers);
+            guidance.warp(children.len(), &mut numbers, &mut diffuse);
         }
-        V::Scattering::sample(bsdfs.clone(), &normals, &numbers, &mut samples);
+        V::Scattering::sample(bsdfs.clone(), &normals, &numbers, &diffuse, &mut samples);
         if is_guided {
-            guidance.redirect(bsdfs.clone(), &normals, &numbers, &mut samples);
+            guidance.redirect(bsdfs.clone(), &normals, &diffuse, &mut samples);
         }
         if learns {
             places = SquarePlaces::of(&normals, &samples.direction);

@@ -165,16 +165,22 @@ impl<C: Colour> Arrival<'_, C> {
     }
 }
 
-/// What draws the directions of children where light was learned.
+/// What a surface makes of what was learned when it draws the directions of children.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Guiding {
-    /// The surface alone: its lobes are discrete.
-    None,
-    /// What was learned or the surface. The broader its lobes, the larger, in (0, 1], is the part of a [`GuidedShare`](crate::learning::GuidedShare)
-    /// that it makes use of.
-    Mixed(f32),
-    /// What was learned alone: the surface draws from the whole square as well.
-    Alone,
+pub(super) struct Guiding {
+    /// The probability with which the surface draws from the whole square, by the cosine: there the warped square takes its place.
+    pub diffuse: f32,
+    /// The part of a [`GuidedShare`](crate::learning::GuidedShare) with which the other lobes make room for the warped square: the broader they are, the
+    /// larger; 0 where they are discrete.
+    pub reach: f32,
+}
+
+impl Guiding {
+    /// That of a surface that is diffuse and nothing else.
+    pub const MATTE: Self = Self {
+        diffuse: 1.0,
+        reach: 0.0,
+    };
 }
 
 /// How a surface scatters light at one vertex. Directions are unit vectors in world space.
@@ -210,7 +216,7 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
     /// Whether light that arrives below the shading normal's horizon can be scattered to where the path comes from.
     fn scatters_below(&self) -> bool;
 
-    /// Whether what was learned can draw the directions of children, and whether alone.
+    /// What is made of what was learned when the directions of children are drawn.
     fn guiding(&self) -> Guiding;
 
     /// Makes sample number `lane` one in `direction`, where `normal` is the unit shading normal of the side that was hit: with the bsdf times cosine as its
@@ -225,12 +231,13 @@ pub(super) trait Scattering<S: SpectrumArithmetic>:
         values: &mut BsdfValues<S>,
     );
 
-    /// Draws an incident direction for each of at most [`CHUNK`] vertices from uniform numbers in [0, 1); the third only where the
-    /// variant [chooses lobes](Variant::CHOOSES_LOBES).
+    /// Draws an incident direction for each of at most [`CHUNK`] vertices from uniform numbers in [0, 1), the third only where the
+    /// variant [chooses lobes](Variant::CHOOSES_LOBES); diffuse lobes draw from the points `diffuse` of the square instead.
     fn sample<'a>(
         vertices: impl Iterator<Item = &'a Self> + Clone,
         normals: &VectorLanes<CHUNK>,
         numbers: &[[f32; CHUNK]; 3],
+        diffuse: &[[f32; CHUNK]; 2],
         samples: &mut BsdfSamples<S>,
     );
 }

@@ -8,7 +8,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::{BsdfSample, BsdfValue, DirectionNumbers};
+use super::{BsdfSample, BsdfValue, DirectionNumbers, Lobes};
 use crate::sampling::warp;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
@@ -72,6 +72,14 @@ impl<S: SpectrumArithmetic> Diffuse<S> {
     }
 
     #[inline]
+    pub(super) fn lobes(&self) -> Lobes {
+        Lobes {
+            diffuse: 1.0,
+            has_glossy: false,
+        }
+    }
+
+    #[inline]
     pub(super) fn has_smooth_lobe(&self) -> bool {
         true
     }
@@ -87,7 +95,7 @@ impl<S: SpectrumArithmetic> Diffuse<S> {
 
     #[inline]
     pub(super) fn sample(&self, _outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
-        let incident = warp::cosine_hemisphere(numbers.square);
+        let incident = numbers.diffuse;
         let pdf = warp::cosine_hemisphere_pdf(incident.z).0;
         // (reflectance / pi) cos / (cos / pi)
         BsdfSample::smooth(incident, self.reflectance, pdf)

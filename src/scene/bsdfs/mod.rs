@@ -71,7 +71,7 @@ pub use thin_dielectric::ThinDielectric;
 
 use glam::{Vec2, Vec3};
 
-use crate::sampling::SolidAnglePdf;
+use crate::sampling::{SolidAnglePdf, warp};
 use crate::spectrum::SpectrumArithmetic;
 
 /// How one side of a surface scatters light at the wavelengths of one path.
@@ -115,6 +115,8 @@ pub enum Model<S> {
 pub struct DirectionNumbers {
     /// Uniform in [0, 1)^2.
     pub square: [f32; 2],
+    /// A direction that diffuse lobes take: above the surface in the shading frame, distributed by its cosine.
+    pub diffuse: Vec3,
     /// Chooses among lobes: uniform in [0, 1).
     pub choice: f32,
     /// The slope that `square` gives where the bsdf has a [`slope_view`](Bsdf::slope_view), if it has been found already.
@@ -122,14 +124,21 @@ pub struct DirectionNumbers {
 }
 
 impl DirectionNumbers {
-    /// Numbers that are uniform in [0, 1).
+    /// Numbers that are uniform in [0, 1), of which all lobes take the first two.
     #[inline]
     pub fn new([u, v, choice]: [f32; 3]) -> Self {
         Self {
             square: [u, v],
+            diffuse: warp::cosine_hemisphere([u, v]),
             choice,
             slope: None,
         }
+    }
+
+    /// The same, with another direction for diffuse lobes.
+    #[inline]
+    pub(crate) fn with_diffuse(self, diffuse: Vec3) -> Self {
+        Self { diffuse, ..self }
     }
 
     /// The same, whose `slope` has been found.
@@ -137,6 +146,15 @@ impl DirectionNumbers {
     pub(crate) fn with_slope(self, slope: Option<Vec2>) -> Self {
         Self { slope, ..self }
     }
+}
+
+/// How the lobes of a bsdf share the directions that it draws.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lobes {
+    /// The probability with which [`Bsdf::sample`] takes the direction [for diffuse lobes](DirectionNumbers::diffuse).
+    pub diffuse: f32,
+    /// Whether any of the others is smooth.
+    pub has_glossy: bool,
 }
 
 /// What the smooth lobes of a bsdf say of a pair of directions; discrete lobes have no values.
@@ -276,6 +294,18 @@ impl<S: SpectrumArithmetic> Bsdf<S> {
         dispatch_frame!(self, model => model.shininess(outgoing))
     }
 
+    /// The lobes of which directions are drawn. Those of a tilted surface are not diffuse: the normal is another.
+    #[inline]
+    pub fn lobes(&self, outgoing: Vec3) -> Lobes {
+        match self {
+            Self::Plain(model) => model.lobes(outgoing),
+            Self::Perturbed(model) => Lobes {
+                diffuse: 0.0,
+                has_glossy: model.has_smooth_lobe(),
+            },
+        }
+    }
+
     /// Whether light from directions other than a few discrete ones is scattered: only then next-event estimation can find any.
     #[inline]
     pub fn has_smooth_lobe(&self) -> bool {
@@ -311,6 +341,21 @@ impl<S: SpectrumArithmetic> Model<S> {
     #[inline]
     fn shininess(&self, outgoing: Vec3) -> f32 {
         dispatch!(self, model => model.shininess(outgoing))
+    }
+
+    #[inline]
+    fn lobes(&self, outgoing: Vec3) -> Lobes {
+        match self {
+            Self::Diffuse(model) => model.lobes(),
+            Self::Plastic(model) => model.lobes(outgoing),
+            Self::RoughPlastic(model) => model.lobes(outgoing),
+            Self::Principled(model) => model.lobes(),
+            Self::PrincipledThin(model) => model.lobes(),
+            other => Lobes {
+                diffuse: 0.0,
+                has_glossy: other.has_smooth_lobe(),
+            },
+        }
     }
 
     #[inline]

@@ -14,7 +14,7 @@ use super::material::SeenPoint;
 use super::stated::Stated;
 use super::surface::Surface;
 use super::{BsdfSample, BsdfValue, DirectionNumbers, Model};
-use crate::sampling::Frame;
+use crate::sampling::{Frame, warp};
 use crate::scene::error::SceneError;
 use crate::scene::textures::TextureLoader;
 use crate::scene::xml::{Class, Object};
@@ -168,7 +168,9 @@ impl<S: SpectrumArithmetic> Perturbed<S> {
     }
 
     pub(super) fn sample(&self, outgoing: Vec3, numbers: &DirectionNumbers) -> BsdfSample<S> {
-        let sample = self.model.sample(self.frame.to_local(outgoing), numbers);
+        // In the tilted frame diffuse lobes have another normal.
+        let numbers = numbers.with_diffuse(warp::cosine_hemisphere(numbers.square));
+        let sample = self.model.sample(self.frame.to_local(outgoing), &numbers);
         let incident = self.frame.to_world(sample.incident);
         if !self.is_consistent(incident, sample.incident.z) {
             return BsdfSample::failed();

@@ -13,7 +13,9 @@ use glam::Vec3;
 
 use super::index::Indices;
 use super::surface::Surface;
-use super::{BsdfSample, BsdfValue, DiffuseMaterial, DirectionNumbers, fresnel, mixed_shininess};
+use super::{
+    BsdfSample, BsdfValue, DiffuseMaterial, DirectionNumbers, Lobes, fresnel, mixed_shininess,
+};
 use crate::sampling::warp;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
@@ -187,6 +189,13 @@ impl<S: SpectrumArithmetic> Plastic<S> {
         mixed_shininess(shares, [f32::INFINITY, 0.0])
     }
 
+    pub(super) fn lobes(&self, outgoing: Vec3) -> Lobes {
+        Lobes {
+            diffuse: 1.0 - self.specular_probability(self.reflected(outgoing.z)),
+            has_glossy: false,
+        }
+    }
+
     #[inline]
     pub(super) fn has_smooth_lobe(&self) -> bool {
         true
@@ -212,7 +221,7 @@ impl<S: SpectrumArithmetic> Plastic<S> {
             let incident = fresnel::reflect_local(outgoing);
             return BsdfSample::discrete(incident, self.specular * (reflected / probability));
         }
-        let incident = warp::cosine_hemisphere(numbers.square);
+        let incident = numbers.diffuse;
         BsdfSample::of_value(incident, self.evaluate(outgoing, incident))
     }
 }

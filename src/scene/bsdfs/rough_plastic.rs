@@ -17,7 +17,7 @@ use super::microfacet::{Distribution, Microfacets};
 use super::plastic::{CoatedBase, PlasticMaterial, specular_probability};
 use super::rough_coating::RoughCoating;
 use super::surface::Surface;
-use super::{BsdfSample, BsdfValue, DirectionNumbers, fresnel, mixed_shininess, roughness};
+use super::{BsdfSample, BsdfValue, DirectionNumbers, Lobes, fresnel, mixed_shininess, roughness};
 use crate::sampling::warp;
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
@@ -128,6 +128,14 @@ impl<S: SpectrumArithmetic> RoughPlastic<S> {
         mixed_shininess(shares, [self.facets.shininess(), 0.0])
     }
 
+    pub(super) fn lobes(&self, outgoing: Vec3) -> Lobes {
+        let transmitted = self.coating.transmittance(outgoing.z);
+        Lobes {
+            diffuse: 1.0 - self.specular_probability(transmitted),
+            has_glossy: true,
+        }
+    }
+
     #[inline]
     pub(super) fn has_smooth_lobe(&self) -> bool {
         true
@@ -162,7 +170,7 @@ impl<S: SpectrumArithmetic> RoughPlastic<S> {
         let incident = if numbers.choice < self.specular_probability(transmitted) {
             fresnel::reflect(outgoing, self.facets.sample_by(outgoing, numbers))
         } else {
-            warp::cosine_hemisphere(numbers.square)
+            numbers.diffuse
         };
         BsdfSample::of_value(incident, self.evaluate(outgoing, incident))
     }

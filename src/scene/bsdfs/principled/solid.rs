@@ -9,7 +9,7 @@ use super::{
 use crate::sampling::warp;
 use crate::scene::bsdfs::microfacet::Microfacets;
 use crate::scene::bsdfs::{
-    BsdfSample, BsdfValue, DirectionNumbers, Side, fresnel, mixed_shininess,
+    BsdfSample, BsdfValue, DirectionNumbers, Lobes, Side, fresnel, mixed_shininess,
 };
 use crate::spectrum::SpectrumArithmetic;
 
@@ -127,6 +127,14 @@ impl<S: SpectrumArithmetic> Principled<S> {
         mixed_shininess(shares, [facets, facets, 0.0])
     }
 
+    pub(in crate::scene::bsdfs) fn lobes(&self) -> Lobes {
+        Lobes {
+            // What a facet reflects makes no difference to that.
+            diffuse: self.probabilities(0.0).diffuse,
+            has_glossy: true,
+        }
+    }
+
     pub(in crate::scene::bsdfs) fn has_smooth_lobe(&self) -> bool {
         true
     }
@@ -225,7 +233,7 @@ impl<S: SpectrumArithmetic> Principled<S> {
         limit += probabilities.refraction;
         let is_refracted = !is_coat && numbers.choice < limit;
         let incident = if is_diffuse {
-            warp::cosine_hemisphere(place)
+            numbers.diffuse
         } else if is_coat {
             fresnel::reflect(outgoing, self.coat.sample(place))
         } else if is_refracted {

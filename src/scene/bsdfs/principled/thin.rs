@@ -26,7 +26,9 @@ use super::{
 };
 use crate::sampling::warp;
 use crate::scene::bsdfs::microfacet::Microfacets;
-use crate::scene::bsdfs::{BsdfSample, BsdfValue, DirectionNumbers, fresnel, mixed_shininess};
+use crate::scene::bsdfs::{
+    BsdfSample, BsdfValue, DirectionNumbers, Lobes, fresnel, mixed_shininess,
+};
 use crate::scene::error::SceneError;
 use crate::scene::shapes::SurfaceParameters;
 use crate::scene::textures::{FloatTexture, TextureLoader};
@@ -182,6 +184,14 @@ impl<S: SpectrumArithmetic> PrincipledThin<S> {
         mixed_shininess(shares, [self.facets.shininess(), 0.0])
     }
 
+    pub(in crate::scene::bsdfs) fn lobes(&self) -> Lobes {
+        let [_, _, diffuse, _] = self.probabilities();
+        Lobes {
+            diffuse,
+            has_glossy: true,
+        }
+    }
+
     pub(in crate::scene::bsdfs) fn has_smooth_lobe(&self) -> bool {
         true
     }
@@ -253,7 +263,7 @@ impl<S: SpectrumArithmetic> PrincipledThin<S> {
             }
             (incident, true)
         } else if numbers.choice < reflection + transmission + diffuse {
-            (warp::cosine_hemisphere(place), false)
+            (numbers.diffuse, false)
         } else {
             (turn_over(warp::cosine_hemisphere(place)), true)
         };

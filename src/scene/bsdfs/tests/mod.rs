@@ -2,6 +2,7 @@
 
 mod chi_square;
 mod conservation;
+mod lobes;
 mod mitsuba;
 mod size;
 
