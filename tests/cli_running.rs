@@ -97,6 +97,41 @@ fn an_interrupted_render_writes_what_there_is() {
 }
 
 #[test]
+fn an_interrupted_render_goes_on_from_its_checkpoint() {
+    let arguments = ["--spp", "512", "--threads", "2"];
+    let at_once = Folder::new();
+    let output = start(&at_once, &arguments).wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+
+    let folder = Folder::new();
+    let kept = [&arguments[..], &["--checkpoint", "out.checkpoint"]].concat();
+    let child = start(&folder, &kept);
+    wait_until_rendering(&child);
+    interrupt(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
+    let output = start(&folder, &kept).wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("going on from out.checkpoint"), "{said}");
+    assert_eq!(attribute(&folder, "cohort:samples"), "512");
+    let image = |folder: &Folder| cohort::read_exr(&folder.path().join("out.exr")).unwrap();
+    assert!(image(&folder) == image(&at_once), "the image is another");
+
+    let other = [&kept[..], &["--seed", "5"]].concat();
+    let output = start(&folder, &other).wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("out.checkpoint is of another render"),
+        "{said}"
+    );
+    let itself = [&arguments[..], &["--checkpoint", "out.exr"]].concat();
+    let output = start(&folder, &itself).wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+}
+
+#[test]
 fn a_budget_of_time_is_kept() {
     let folder = Folder::new();
     let output = start(&folder, &["--time", "2s"])

@@ -10,7 +10,9 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use cohort::embree::BuildQuality;
 use cohort::film::{ExrMoments, ExrOptions, Film, FilmSums, Image, write_exr, write_png};
-use cohort::render::{Budget, ColourMode, Ended, Render, Settings, WavelengthCount, metadata};
+use cohort::render::{
+    Budget, Checkpoint, ColourMode, Ended, KeptOutcome, Render, Settings, WavelengthCount, metadata,
+};
 use cohort::sampling::SamplerKind;
 use cohort::scene::{PathIntegrator, Scene};
 use cohort::transport::DirectLight;
@@ -43,6 +45,11 @@ pub struct RenderArgs {
     /// Rays to trace, shadow rays included
     #[arg(long, value_name = "N", value_parser = parse_rays)]
     rays: Option<NonZeroU64>,
+
+    /// A file that keeps how far the render is, every minute and at its end, and from which it goes on if it is there; budgets count from the very
+    /// beginning, and a larger one goes on with a render that is done
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
 
     /// Threads that load and render [default: all cores]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
@@ -144,6 +151,15 @@ enum Quality {
 /// Runs the subcommand.
 pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
     let files = OutputFiles::check(&arguments.output_path())?;
+    if let Some(path) = &arguments.checkpoint
+        && (*path == files.exr || *path == files.png)
+    {
+        let path = path.display();
+        return Err(format!(
+            "{path}: the image is written there; name another file for the checkpoint"
+        )
+        .into());
+    }
     // A wrong setting is told before a scene is loaded, which can take long.
     let default_depth = PathIntegrator::default().roulette_depth;
     arguments.strategy.build(default_depth)?;
@@ -151,11 +167,32 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
     warn_of_darkness(&scene);
     let settings = arguments.settings(&scene)?;
     let render = Render::new(Arc::new(scene), settings)?;
+    let checkpoint = match &arguments.checkpoint {
+        Some(path) => Some(Checkpoint::open(path, &render, &arguments.scene_text()?)?),
+        None => None,
+    };
+    if let (Some(path), Some((_, state))) = (&arguments.checkpoint, &checkpoint)
+        && state.statistics().camera_paths > 0
+    {
+        let (path, seconds) = (path.display(), state.duration().as_secs_f64());
+        tell(format!(
+            "going on from {path}, after {seconds:.1} s of rendering"
+        ));
+    }
     let stop =
         stop_on_interrupt("stopping; what there is will be written (Ctrl-C again to lose it)")?;
     let bar = Bar::new();
-    let outcome = render.run(&stop, &bar);
+    let (outcome, kept) = match checkpoint {
+        Some((checkpoint, state)) => {
+            let KeptOutcome { outcome, kept } = checkpoint.run(&render, state, &stop, &bar);
+            (outcome, kept)
+        }
+        None => (render.run(&stop, &bar), Ok(())),
+    };
     bar.clear();
+    if let Err(error) = kept {
+        tell(format!("warning: {error}"));
+    }
 
     let film = &render.engine().scene().film;
     let image = outcome.film.image();
@@ -201,6 +238,13 @@ impl RenderArgs {
     fn output_path(&self) -> PathBuf {
         let by_default = || PathBuf::from(format!("{}.exr", self.scene.stem()));
         self.output.clone().unwrap_or_else(by_default)
+    }
+
+    /// Whatever decides what the scene is.
+    fn scene_text(&self) -> Result<Vec<u8>, Box<dyn Error>> {
+        let mut text = self.scene.text()?;
+        text.extend(format!("{:?}", self.scene.definitions()).bytes());
+        Ok(text)
     }
 
     fn threads(&self) -> NonZeroUsize {

@@ -1,5 +1,6 @@
 //! The film: which sample falls where, the sums per pixel, and the files that show them.
 
+mod checked_file;
 mod exr_file;
 mod filter;
 mod image;
@@ -12,6 +13,7 @@ mod sums;
 mod tiles;
 mod whole_file;
 
+pub use checked_file::{CheckedFileError, read_checked, write_checked};
 pub use exr_file::{ExrMoments, ExrOptions, read_exr, read_exr_variance, write_exr};
 pub use filter::{FilterSample, FilterSampler, PixelFilter};
 pub use image::{FilmFileError, Image};

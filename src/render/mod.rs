@@ -1,6 +1,7 @@
 //! The driver: from a scene and settings to a film, within a budget, in one go or in slices.
 
 mod allocation;
+mod checkpoint;
 mod driver;
 mod memory;
 mod metadata;
@@ -11,6 +12,7 @@ mod state;
 mod trial;
 mod watch;
 
+pub use checkpoint::{Checkpoint, CheckpointError, KeptOutcome};
 pub use driver::{MAX_THREADS, Render, RenderError};
 pub use metadata::{metadata, processor_name, what_is_computed};
 pub use progress::{Observer, Progress, StopFlag};

@@ -32,7 +32,10 @@ impl Observer for () {
 
 /// Asks a render to stop after the batches that are under way. Clones are the same flag.
 #[derive(Clone, Debug, Default)]
-pub struct StopFlag(Arc<AtomicBool>);
+pub struct StopFlag {
+    raised: Arc<AtomicBool>,
+    parent: Option<Arc<StopFlag>>,
+}
 
 impl StopFlag {
     /// A flag that is not raised.
@@ -40,13 +43,26 @@ impl StopFlag {
         Self::default()
     }
 
+    /// A flag that is raised when this one is, or alone.
+    pub fn child(&self) -> Self {
+        Self {
+            raised: Arc::default(),
+            parent: Some(Arc::new(self.clone())),
+        }
+    }
+
     /// Asks to stop.
     pub fn raise(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.raised.store(true, Ordering::Relaxed);
     }
 
     /// Whether somebody asked to stop.
     pub fn is_raised(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        let is_raised_above = || {
+            self.parent
+                .as_ref()
+                .is_some_and(|parent| parent.is_raised())
+        };
+        self.raised.load(Ordering::Relaxed) || is_raised_above()
     }
 }

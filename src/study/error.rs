@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::peer::PeerError;
 use super::reference::ReferenceError;
 use super::report::ReportError;
-use crate::film::FilmFileError;
+use crate::film::{CheckedFileError, FilmFileError};
 use crate::render::RenderError;
 use crate::walk::SettingError;
 
@@ -78,4 +78,15 @@ pub enum StudyError {
         "every strategy takes part, so that none is left to render the reference; leave one out, or give a reference with --reference"
     )]
     NoReferenceStrategy,
+}
+
+impl From<CheckedFileError> for StudyError {
+    fn from(error: CheckedFileError) -> Self {
+        match error {
+            CheckedFileError::Write(error) => Self::File(error),
+            CheckedFileError::Read { path, source } => Self::Io { path, source },
+            CheckedFileError::Encode(error) => Self::Encode(error),
+            CheckedFileError::Damaged(error) => Self::Damaged(error),
+        }
+    }
 }

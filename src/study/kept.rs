@@ -1,19 +1,14 @@
 //! What a study keeps in its folder, so that it can be interrupted at any time and resumed.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use crc::Crc;
 use serde::{Deserialize, Serialize};
 
 use super::results::Errors;
 use super::{Standing, StudyError};
-use crate::film::{FilmFileError, WholeFile};
+use crate::film::{WholeFile, read_checked, write_checked};
 use crate::render::RenderState;
-
-/// What a file ends with, so that one that was damaged is not taken for a study.
-const CHECK: Crc<u32> = Crc::<u32>::new(&crc::CRC_32_ISCSI);
 
 /// Where one competitor stood at a snapshot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -83,16 +78,7 @@ impl StudyFolder {
             fingerprint: fingerprint.to_owned(),
             ..Kept::default()
         };
-        let kept = match fs::read(folder.kept_path()) {
-            Ok(bytes) => {
-                postcard::from_bytes_crc32(&bytes, CHECK.digest()).map_err(StudyError::Damaged)?
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => fresh,
-            Err(source) => {
-                let path = folder.kept_path();
-                return Err(StudyError::Io { path, source });
-            }
-        };
+        let kept = read_checked(&folder.kept_path())?.unwrap_or(fresh);
         if kept.fingerprint != fingerprint {
             return Err(StudyError::AnotherStudy(path.to_owned()));
         }
@@ -129,17 +115,7 @@ impl StudyFolder {
     /// # Errors
     /// The disk refuses.
     pub fn keep(&self, kept: &Kept) -> Result<(), StudyError> {
-        let bytes = postcard::to_stdvec_crc32(kept, CHECK.digest()).map_err(StudyError::Encode)?;
-        let path = self.kept_path();
-        WholeFile::create(&path)?.finish(|writer| {
-            writer
-                .write_all(&bytes)
-                .map_err(|source| FilmFileError::Write {
-                    path: path.clone(),
-                    source,
-                })
-        })?;
-        Ok(())
+        Ok(write_checked(&self.kept_path(), kept)?)
     }
 }
 
