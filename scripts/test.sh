@@ -14,3 +14,4 @@ export COHORT_MITSUBA_PYTHON
 
 cargo test --workspace
 cargo build --workspace --examples
+RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps

@@ -10,7 +10,7 @@ use crate::scene::ChosenGroup;
 /// What one path segment brought back to the vertex that it had left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// Where the vertex was (see [`Knowledge::address`](super::Knowledge::address)).
+    /// Where the vertex was (one of `Knowledge::addresses`).
     pub address: u32,
     /// Where the lobes of its surface pointed, if it has any and counts are learned.
     pub lobe: Option<LobeClass>,
@@ -29,7 +29,7 @@ pub struct Observation {
 /// What one look at a light brought to a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightObservation {
-    /// Where the vertex was (see [`Knowledge::address`](super::Knowledge::address)).
+    /// Where the vertex was (one of `Knowledge::addresses`).
     pub address: u32,
     /// The group to which the light belongs.
     pub group: ChosenGroup,

@@ -1,7 +1,7 @@
 //! The models of the project's scenes: where they lie, and how a missing one is made or fetched.
 //!
 //! The knot is generated. The Armadillo and Lucy come from the Stanford 3D Scanning Repository, one
-//! way through: [`download`] to a temporary file and check it, [`unpack`] it to a PLY, read that,
+//! way through: `download` to a temporary file and check it, `unpack` it to a PLY, read that,
 //! [`simplify`] it where the scene wants fewer triangles, and write the result beside its final
 //! name, which it gets last. Whatever fails, no partial file is left.
 

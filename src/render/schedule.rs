@@ -74,7 +74,7 @@ impl Schedule {
     }
 
     /// Whether a render that learns does so from a pass before which every pixel has had so many samples: from all that begin in the first quarter of a
-    /// given number, and never from more than [`LESSONS`] and [`TEACHING_PATHS`] allow.
+    /// given number, and never from more than `LESSONS` and `TEACHING_PATHS` allow.
     pub fn teaches(&self, before: u64) -> bool {
         before < u64::from(self.lessons())
     }

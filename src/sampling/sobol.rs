@@ -44,7 +44,7 @@ impl SequencePoint {
         }
     }
 
-    /// The point of this rank in the lattices of a scramble (see [`lattice`](super::lattice)).
+    /// The point of this rank in the lattices of a scramble (see `lattice.rs`).
     #[inline]
     pub fn ranked(scramble: u32, rank: u32) -> Self {
         Self {
@@ -72,7 +72,7 @@ impl SequencePoint {
         self.index
     }
 
-    /// Four coordinates in \[0, 1), with [`COORDINATE_BITS`] bits each: dimensions 4 `set` to 4 `set` + 3.
+    /// Four coordinates in \[0, 1), with `COORDINATE_BITS` bits each: dimensions 4 `set` to 4 `set` + 3.
     #[inline]
     pub fn coordinates(self, set: u32) -> [f32; 4] {
         let (set, scramble) = self.within_table(set);

@@ -24,7 +24,7 @@ pub trait Colour: Copy + Debug + Default + Send + Sync + 'static {
     /// How many uniform numbers [`Self::sample_wavelengths`] makes use of: 0 or 1.
     const RANDOM_NUMBERS: usize;
 
-    /// Appends the wavelengths of `count` paths, at most [`CHUNK`], each drawn from its uniform number `u` in [0, 1).
+    /// Appends the wavelengths of `count` paths, at most `CHUNK`, each drawn from its uniform number `u` in [0, 1).
     fn sample_wavelengths(
         u: &[f32; CHUNK],
         count: usize,

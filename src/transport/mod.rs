@@ -6,8 +6,8 @@
 //!                +-----------------------------------------+
 //! ```
 //!
-//! A batch holds all camera paths of one tile in one pass. Path states are structures of arrays: [`Segments`] are rays
-//! on their way, [`Vertices`] the surface points that they reached. Every stage is one file and one loop. Children of
+//! A batch holds all camera paths of one tile in one pass. Path states are structures of arrays: `Segments` are rays
+//! on their way, `Vertices` the surface points that they reached. Every stage is one file and one loop. Children of
 //! one parent stand side by side from the strategy's decision on; so they share hit point, material and direct light,
 //! and their rays are neighbours in the stream. The strategy decides before light is sampled: how light sampling and the children share the light of
 //! an emitter depends on how many children are expected (multi-sample MIS, Veach 1997, section 9.2.4).

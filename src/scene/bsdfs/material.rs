@@ -115,7 +115,7 @@ impl Material {
         self.tree.is_transmissive()
     }
 
-    /// Whether all that it does is to reflect diffusely, the same at every point: [`Self::matte`] then says all.
+    /// Whether all that it does is to reflect diffusely, the same at every point: `matte` then says all.
     pub fn is_matte(&self) -> bool {
         self.tree.is_matte()
     }

@@ -111,7 +111,7 @@ impl AreaLight {
         }
     }
 
-    /// The density with which [`Self::sample`] draws the direction from `reference` to `point`.
+    /// The density with which `sample` draws the direction from `reference` to `point`.
     #[inline]
     pub fn pdf(&self, shapes: &[Shape], reference: Vec3, point: &SurfacePoint) -> SolidAnglePdf {
         shapes[self.shape.index()].geometry.pdf(reference, point)

@@ -41,7 +41,7 @@ impl ConstantLight {
         C::evaluate(&self.radiance, wavelengths)
     }
 
-    /// The density with which [`Self::sample`] draws any direction.
+    /// The density with which `sample` draws any direction.
     #[inline]
     pub fn pdf(&self) -> SolidAnglePdf {
         warp::SPHERE_PDF

@@ -116,7 +116,7 @@ impl EnvironmentMap {
         C::evaluate_emission(&self.radiance, &self.texels_at(position), wavelengths)
     }
 
-    /// The density with which [`Self::sample`] draws `direction` (unit, world space).
+    /// The density with which `sample` draws `direction` (unit, world space).
     #[inline]
     pub fn pdf(&self, direction: Vec3) -> SolidAnglePdf {
         let Some(distribution) = &self.distribution else {

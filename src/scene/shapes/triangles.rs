@@ -96,7 +96,7 @@ impl Triangles {
         }))
     }
 
-    /// Makes the mesh ready for [`Self::sample`]. Returns whether it can be: its area must be positive and finite.
+    /// Makes the mesh ready for `sample`. Returns whether it can be: its area must be positive and finite.
     pub fn prepare_sampling(&mut self) -> bool {
         self.sampling = MeshSampling::new(self);
         self.sampling.is_some()
