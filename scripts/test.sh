@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what the tests need and runs all of them, on Debian 12 or 13.
+# Installs what the tests need and runs all of them, and checks the links of the documentation, on Debian 12 or 13.
 # COHORT_MODELS may name a folder with armadillo.ply and lucy.ply, COHORT_SUITE one with Mitsuba's own scenes.
 # COHORT_MITSUBA_PYTHON may name a Python that has Mitsuba; otherwise an environment with it is made.
 set -euo pipefail

@@ -3,7 +3,7 @@
 mod support;
 
 use std::fs;
-use std::num::{NonZeroU64, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -66,6 +66,24 @@ fn a_render_goes_on_from_its_file() {
     // Done already.
     let again = go_on(&path, &prepared(rays(200_000), |_| ()));
     assert!(again.film == outcome.film, "the image is another");
+}
+
+#[test]
+fn a_larger_number_of_samples_goes_on_with_a_render_that_is_done() {
+    let spp = |samples| Budget::SamplesPerPixel(NonZeroU32::new(samples).expect("not zero"));
+    let folder = tempfile::tempdir().expect("there is a place for files");
+    let path = file(&folder);
+    let small = go_on(
+        &path,
+        &prepared(spp(8), |settings| settings.adaptive = false),
+    );
+    let larger = go_on(
+        &path,
+        &prepared(spp(64), |settings| settings.adaptive = false),
+    );
+    assert_eq!(larger.ended, Ended::Complete);
+    assert!(larger.film.pixels().all(|pixel| pixel.samples == 64));
+    assert!(larger.statistics.all_rays() > 4 * small.statistics.all_rays());
 }
 
 #[test]

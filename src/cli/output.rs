@@ -19,6 +19,8 @@ pub enum OutputError {
     Extension(PathBuf),
     #[error("{}: this is a folder; name a file in it that ends in .exr", .0.display())]
     Folder(PathBuf),
+    #[error("{}: the image is written there; name another file", .0.display())]
+    Taken(PathBuf),
     #[error(transparent)]
     File(#[from] FilmFileError),
 }
@@ -40,6 +42,27 @@ impl OutputFiles {
             WholeFile::create(path)?;
         }
         Ok(Self { exr, png })
+    }
+
+    /// Whether a file that is written besides is another than these, however it is named.
+    pub fn check_other(&self, path: &Path) -> Result<(), OutputError> {
+        let place = |path: &Path| {
+            let folder = match path.parent() {
+                Some(folder) if folder != Path::new("") => folder,
+                _ => Path::new("."),
+            };
+            (
+                folder.canonicalize().ok(),
+                path.file_name().map(|name| name.to_owned()),
+            )
+        };
+        if [&self.exr, &self.png]
+            .map(|file| place(file))
+            .contains(&place(path))
+        {
+            return Err(OutputError::Taken(path.to_owned()));
+        }
+        Ok(())
     }
 }
 
@@ -79,6 +102,16 @@ mod tests {
         assert!(refused.to_string().contains("a.png"), "{refused}");
         let refused = OutputFiles::check(folder.path()).unwrap_err();
         assert!(matches!(refused, OutputError::Folder(_)), "{refused}");
+    }
+
+    #[test]
+    fn the_same_place_by_another_name_is_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("b")).unwrap();
+        let files = OutputFiles::check(&folder.path().join("a.exr")).unwrap();
+        let is_other = |name: &str| files.check_other(&folder.path().join(name)).is_ok();
+        assert!(!is_other("a.exr") && !is_other("b/../a.png"));
+        assert!(is_other("a.checkpoint") && is_other("b/a.exr"));
     }
 
     #[test]

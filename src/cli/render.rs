@@ -47,7 +47,7 @@ pub struct RenderArgs {
     rays: Option<NonZeroU64>,
 
     /// A file that keeps how far the render is, every minute and at its end, and from which it goes on if it is there; budgets count from the very
-    /// beginning, and a larger one goes on with a render that is done
+    /// beginning, and a larger one goes on with a render that is done. Models, textures and included files must be the same as before
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
 
@@ -151,14 +151,8 @@ enum Quality {
 /// Runs the subcommand.
 pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
     let files = OutputFiles::check(&arguments.output_path())?;
-    if let Some(path) = &arguments.checkpoint
-        && (*path == files.exr || *path == files.png)
-    {
-        let path = path.display();
-        return Err(format!(
-            "{path}: the image is written there; name another file for the checkpoint"
-        )
-        .into());
+    if let Some(path) = &arguments.checkpoint {
+        files.check_other(path)?;
     }
     // A wrong setting is told before a scene is loaded, which can take long.
     let default_depth = PathIntegrator::default().roulette_depth;
@@ -168,7 +162,7 @@ pub fn run(arguments: RenderArgs) -> Result<ExitCode, Box<dyn Error>> {
     let settings = arguments.settings(&scene)?;
     let render = Render::new(Arc::new(scene), settings)?;
     let checkpoint = match &arguments.checkpoint {
-        Some(path) => Some(Checkpoint::open(path, &render, &arguments.scene_text()?)?),
+        Some(path) => Some(Checkpoint::open(path, &render, &arguments.scene.text()?)?),
         None => None,
     };
     if let (Some(path), Some((_, state))) = (&arguments.checkpoint, &checkpoint)
@@ -238,13 +232,6 @@ impl RenderArgs {
     fn output_path(&self) -> PathBuf {
         let by_default = || PathBuf::from(format!("{}.exr", self.scene.stem()));
         self.output.clone().unwrap_or_else(by_default)
-    }
-
-    /// Whatever decides what the scene is.
-    fn scene_text(&self) -> Result<Vec<u8>, Box<dyn Error>> {
-        let mut text = self.scene.text()?;
-        text.extend(format!("{:?}", self.scene.definitions()).bytes());
-        Ok(text)
     }
 
     fn threads(&self) -> NonZeroUsize {

@@ -93,7 +93,7 @@ impl SceneArgs {
             Some(path) => std::fs::read(path)?,
             None => Vec::new(),
         };
-        text.extend(format!("{:?}", self.size).bytes());
+        text.extend(format!("{:?} {:?}", self.size, self.definitions()).bytes());
         Ok(text)
     }
 

@@ -27,9 +27,17 @@ pub struct Checkpoint {
 /// Why a render cannot be kept, or cannot go on from what was kept.
 #[derive(Debug, Error)]
 pub enum CheckpointError {
-    /// The file cannot be written, or holds no render.
-    #[error("the checkpoint {} cannot be used: {source}; delete it, or name another", path.display())]
-    File {
+    /// The file cannot be written or read, or is damaged.
+    #[error("the checkpoint {} cannot be used: {source}; name another", path.display())]
+    Unusable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: CheckedFileError,
+    },
+    /// The render could not be kept.
+    #[error("the render could not be kept in {}, where what was kept before it still is: {source}", path.display())]
+    NotKept {
         /// The file.
         path: PathBuf,
         /// Why.
@@ -53,7 +61,8 @@ pub struct KeptOutcome {
 }
 
 impl Checkpoint {
-    /// The checkpoint of `render` at `path`, and what the render goes on from: what is there, or the beginning. `scene_text` is what decides the scene.
+    /// The checkpoint of `render` at `path`, and what the render goes on from: what is there, or the beginning. `scene_text` is what decides the scene:
+    /// that other files which it names are still the same is for the caller to know.
     ///
     /// Renders that differ only in their budget or in the number of threads are the same.
     ///
@@ -64,9 +73,11 @@ impl Checkpoint {
         render: &Render,
         scene_text: &[u8],
     ) -> Result<(Self, RenderState), CheckpointError> {
+        let (seed, film) = (render.settings().seed, &render.engine().scene().film);
+        let what = format!("{:?} {seed} {film:?}", what_is_computed(render));
         let checkpoint = Self {
             path: path.to_owned(),
-            fingerprint: fingerprint(render, scene_text),
+            fingerprint: fingerprint(&what, scene_text),
             interval: INTERVAL,
         };
         // Found out now rather than after hours.
@@ -91,7 +102,7 @@ impl Checkpoint {
     }
 
     fn refuse(&self, source: CheckedFileError) -> CheckpointError {
-        CheckpointError::File {
+        CheckpointError::Unusable {
             path: self.path.clone(),
             source,
         }
@@ -99,7 +110,12 @@ impl Checkpoint {
 
     /// Keeps how far a render is.
     fn keep(&self, state: &RenderState) -> Result<(), CheckpointError> {
-        write_checked(&self.path, &(&self.fingerprint, state)).map_err(|error| self.refuse(error))
+        write_checked(&self.path, &(&self.fingerprint, state)).map_err(|source| {
+            CheckpointError::NotKept {
+                path: self.path.clone(),
+                source,
+            }
+        })
     }
 
     /// Goes on with `state` until the budget of `render`, which counts from its very beginning, is used up or `stop` is raised; and keeps it now and then,
@@ -135,16 +151,11 @@ impl Checkpoint {
     }
 }
 
-/// What tells a render from any other: everything that decides what is computed.
-fn fingerprint(render: &Render, scene_text: &[u8]) -> String {
-    let (settings, film) = (render.settings(), &render.engine().scene().film);
+/// What tells what is computed, by this version of the program, from anything else: `what` says how, `scene_text` of which scene.
+pub(crate) fn fingerprint(what: &str, scene_text: &[u8]) -> String {
     let mut hash = Sha256::new();
     hash.update(env!("CARGO_PKG_VERSION"));
-    hash.update(format!(
-        "{:?} {} {film:?}",
-        what_is_computed(render),
-        settings.seed
-    ));
+    hash.update(what);
     hash.update(scene_text);
     hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
 }

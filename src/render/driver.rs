@@ -190,7 +190,16 @@ impl Render {
             .learns()
             .then(|| Knowledge::nothing(self.engine.bounds(), size));
         let allocation = self.settings.adaptive.then(|| Allocation::new(&film));
-        RenderState::new(film, knowledge, allocation, seed)
+        RenderState::new(film, knowledge, self.schedule().lessons(), allocation, seed)
+    }
+
+    /// The passes of a render that begins with the budget of the settings.
+    fn schedule(&self) -> Schedule {
+        let Settings {
+            budget, sampler, ..
+        } = self.settings;
+        let pixels = self.engine.scene().film.crop.size.pixels();
+        Schedule::new(budget, sampler, self.learns(), pixels)
     }
 
     /// Whether [`advance`](Self::advance) can go on from `state`, which may come from a file: whether its image has the
@@ -227,12 +236,7 @@ impl Render {
     ) -> Ended {
         assert!(self.fits(state), "the state is of another image");
         let watch = Watch::new(state, until, stop, observer);
-        let schedule = Schedule::new(
-            self.settings.budget,
-            self.settings.sampler,
-            state.knowledge.is_some(),
-            state.film.size().pixels(),
-        );
+        let schedule = self.schedule().with_lessons(state.lessons);
         let trial = self.trial();
         let ended = self.pool.install(|| {
             loop {

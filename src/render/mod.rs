@@ -12,6 +12,7 @@ mod state;
 mod trial;
 mod watch;
 
+pub(crate) use checkpoint::fingerprint;
 pub use checkpoint::{Checkpoint, CheckpointError, KeptOutcome};
 pub use driver::{MAX_THREADS, Render, RenderError};
 pub use metadata::{metadata, processor_name, what_is_computed};

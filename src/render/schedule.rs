@@ -29,7 +29,8 @@ pub struct Schedule {
     budget: Budget,
     sampler: SamplerKind,
     learns: bool,
-    pixels: usize,
+    /// Samples per pixel before which passes teach.
+    lessons: u32,
 }
 
 impl Schedule {
@@ -39,8 +40,18 @@ impl Schedule {
             budget,
             sampler,
             learns,
-            pixels,
+            lessons: if learns { lessons(budget, pixels) } else { 0 },
         }
+    }
+
+    /// The same, with the [lessons](Self::lessons) that were settled when the render began, for another budget.
+    pub fn with_lessons(self, lessons: u32) -> Self {
+        Self { lessons, ..self }
+    }
+
+    /// From how many samples of every pixel the render learns.
+    pub fn lessons(&self) -> u32 {
+        self.lessons
     }
 
     /// Samples per pixel of pass number `pass` (from 0), where every pixel has `before` of the passes before and the
@@ -76,7 +87,7 @@ impl Schedule {
     /// Whether a render that learns does so from a pass before which every pixel has had so many samples: from all that begin in the first quarter of a
     /// given number, and never from more than `LESSONS` and `TEACHING_PATHS` allow.
     pub fn teaches(&self, before: u64) -> bool {
-        before < u64::from(self.lessons())
+        before < u64::from(self.lessons)
     }
 
     /// The weight of every sample of a pass before which every pixel has had so many samples. It depends on the pass alone, so images stay unbiased.
@@ -92,23 +103,12 @@ impl Schedule {
     /// leave pixels that it does not reach far behind, and the film could not tell its noise from that of the lessons.
     fn weight_so_far(&self, before: u64) -> u32 {
         // Passes of lessons double what there is.
-        let taught = match self.lessons() {
+        let taught = match self.lessons {
             0 => 0,
             lessons => u64::from(lessons.next_power_of_two()),
         };
         let weight = before.saturating_sub(taught.div_ceil(2));
         u32::try_from(weight).unwrap_or(u32::MAX).max(1)
-    }
-
-    fn lessons(&self) -> u32 {
-        let [most, fewest] = LESSONS;
-        // It fits, being small.
-        let enough =
-            (TEACHING_PATHS / self.pixels.max(1)).clamp(fewest as usize, most as usize) as u32;
-        match self.budget {
-            Budget::SamplesPerPixel(total) => enough.min(total.get() / 4),
-            Budget::Time(_) | Budget::Rays(_) => enough,
-        }
     }
 
     /// The size of a full pass for pixels of so many samples.
@@ -119,6 +119,17 @@ impl Schedule {
         };
         // A power of two, and it fits.
         (1 << grown.ilog2()).max(FULL_PASS)
+    }
+}
+
+/// From how many samples of each of so many pixels a render learns that begins with this budget.
+fn lessons(budget: Budget, pixels: usize) -> u32 {
+    let [most, fewest] = LESSONS;
+    // It fits, being small.
+    let enough = (TEACHING_PATHS / pixels.max(1)).clamp(fewest as usize, most as usize) as u32;
+    match budget {
+        Budget::SamplesPerPixel(total) => enough.min(total.get() / 4),
+        Budget::Time(_) | Budget::Rays(_) => enough,
     }
 }
 
@@ -236,6 +247,15 @@ mod tests {
         assert_eq!(timed, [32, 8, 3, 2]);
         let counted = [3, 64, 4096].map(|samples| lessons(spp(samples), 1));
         assert_eq!(counted, [0, 16, 32]);
+    }
+
+    /// What was taught is forgotten with the last lesson: a larger budget does not begin again.
+    #[test]
+    fn lessons_stay_as_they_were_settled() {
+        let of = |budget| Schedule::new(budget, SamplerKind::Independent, true, 1);
+        let gone_on = of(spp(400)).with_lessons(of(spp(8)).lessons());
+        assert!(gone_on.teaches(1) && !gone_on.teaches(2) && of(spp(400)).teaches(2));
+        assert_eq!([1, 2].map(|before| gone_on.weight(before)), [0.5, 1.0]);
     }
 
     #[test]

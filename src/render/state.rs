@@ -21,6 +21,8 @@ pub struct RenderState {
     pub(super) film: Film,
     /// Of a render that learns.
     pub(super) knowledge: Option<Knowledge>,
+    /// From how many samples of every pixel it learns: settled by the budget with which it began.
+    pub(super) lessons: u32,
     /// Of a render that is adaptive.
     pub(super) allocation: Option<Allocation>,
     /// What was found by trying it so far.
@@ -92,6 +94,7 @@ impl RenderState {
     pub(super) fn new(
         film: Film,
         knowledge: Option<Knowledge>,
+        lessons: u32,
         allocation: Option<Allocation>,
         seed: u64,
     ) -> Self {
@@ -105,6 +108,7 @@ impl RenderState {
             },
             film,
             knowledge,
+            lessons,
             allocation,
             findings: Vec::new(),
             reliance: None,

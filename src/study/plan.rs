@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use super::peer::MitsubaVariant;
 use super::results::{Crop, StudyKind};
 use super::{EntrySettings, StudyError};
-use crate::render::{Budget, ColourMode};
+use crate::render::{Budget, ColourMode, fingerprint};
 use crate::walk::StrategyKind;
 
 /// What a study is to do.
@@ -182,13 +182,10 @@ impl Plan {
             scene,
             command: _,
         } = self;
-        let mut hash = Sha256::new();
-        hash.update(env!("CARGO_PKG_VERSION"));
-        hash.update(format!(
+        let what = format!(
             "{kind:?} {competitors:?} {budget:?} {repetitions} {snapshots} {seed} {colour:?} {threads} {reference:?} {flip} {scene:?}"
-        ));
-        hash.update(scene_text);
-        hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+        );
+        fingerprint(&what, scene_text)
     }
 }
 

@@ -106,10 +106,10 @@ impl<S: SpectrumArithmetic> Framed<S> {
     pub fn guiding(&self) -> Guiding {
         let lobes = self.bsdf.lobes(self.outgoing);
         // What arrives within a narrow lobe is not learned.
-        let reach = 1.0 / (1.0 + self.shininess() * (1.0 / NARROW));
+        let reach = || 1.0 / (1.0 + self.shininess() * (1.0 / NARROW));
         Guiding {
             diffuse: lobes.diffuse,
-            reach: if lobes.has_glossy { reach } else { 0.0 },
+            reach: if lobes.has_glossy { reach() } else { 0.0 },
         }
     }
 

@@ -115,7 +115,8 @@ pub enum Model<S> {
 pub struct DirectionNumbers {
     /// Uniform in [0, 1)^2.
     pub square: [f32; 2],
-    /// A direction that diffuse lobes take: above the surface in the shading frame, distributed by its cosine.
+    /// The direction that diffuse lobes take: above the surface in the shading frame, distributed by the cosine to its normal. Who puts one of another
+    /// distribution there corrects weights and densities.
     pub diffuse: Vec3,
     /// Chooses among lobes: uniform in [0, 1).
     pub choice: f32,
